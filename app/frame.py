@@ -80,7 +80,7 @@ class Geometry:
     points: Floats
     """Contact points, shape (n_points, 2), m; NaN where a line of them is broken."""
     chains: NDArray[np.intp]
-    """Number of the interface of each contact point, shape (n_points,)."""
+    """Index of the interface of each contact point, shape (n_points,)."""
     outlines: NDArray[np.intp]
     """Nodes of closed lines round substructures, -1 behind each line."""
     rims: NDArray[np.intp]
@@ -264,7 +264,7 @@ class Selection:
     interface: str = ""
     """Name of the selected interface."""
     substructure: int | None = None
-    """Number of the selected substructure, from 0; None is the last."""
+    """Index of the selected substructure, from 0; None is the last."""
     position: float | None = None
     """Position along the bodies that is marked, m."""
     stage: str = LINEAR

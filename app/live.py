@@ -339,7 +339,7 @@ def first_needs(state: PageState, kinds: Kinds | None) -> frozenset[str]:
 
 
 def on_top(offered: Sequence[View] | Sequence[type[View]], state: PageState) -> int:
-    """Number of the view, of those that a card offers, that the state names; or 0."""
+    """Index of the view, of those that a card offers, that the state names; or 0."""
     names = [view.name for view in offered]
     named = [names.index(name) for name in state.plots if name in names]
     return next(iter(named), 0)

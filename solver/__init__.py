@@ -21,7 +21,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Load a name when it is first asked for.
+    """Import the module of a public name when the name is first used.
 
     NumPy is told beforehand how many threads it may use (`solver/__main__.py`).
     """

@@ -19,7 +19,7 @@ from solver.commands.console import INTERRUPTED  # noqa: E402
 
 
 def main() -> int:
-    """Exit code of one command; Ctrl-C after its end ends the process at once."""
+    """Run the command of the arguments; return its exit code."""
     try:
         if _is_heard:
             signal.signal(signal.SIGINT, signal.default_int_handler)

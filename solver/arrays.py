@@ -28,7 +28,7 @@ def space_time(n_rows: int, n_instants: int) -> Array:
 
 
 def sparse_factor(matrix: sparse.csc_array, **how: Any) -> SuperLU:
-    """LU factor of a sparse matrix, (n, n); `how` are arguments of SciPy's `splu`.
+    """LU factors of a sparse matrix, (n, n); `how` are arguments of SciPy's `splu`.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def sparse_factor(matrix: sparse.csc_array, **how: Any) -> SuperLU:
 
 
 def read_only(field: Array) -> Array:
-    """The same field, of any shape, made read-only in place."""
+    """Make a field of any shape read-only in place, and return the field."""
     field.flags.writeable = False
     return field
 
@@ -62,7 +62,7 @@ def as_slice(rows: Indices) -> slice | Indices:
 
 
 def distinct(numbers: Indices, count: int) -> tuple[Indices, Indices, Indices]:
-    """Distinct ones of numbers below a count, as NumPy's `unique` finds by sorting.
+    """Distinct integers below a count, ascending, as NumPy's `unique` returns them.
 
     Parameters
     ----------
@@ -99,13 +99,13 @@ def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
 
 
 def largest_size(*fields: Array) -> float:
-    """Largest absolute value in fields of any shape; NaN where one is in them, or 0."""
+    """Largest absolute value in fields of any shape: 0 without values, NaN with any."""
     sizes = [float(np.abs(field).max(initial=0.0)) for field in fields]
     return float(np.max(sizes, initial=0.0))
 
 
 def power_of_two(values: Array) -> float:
-    """Power of two of the largest of values, of any shape.
+    """Largest power of two not above the largest size of values of any shape.
 
     Values over it are at most 2. To divide by it rounds nothing, and squares of what is
     left neither vanish nor overflow.
@@ -115,7 +115,7 @@ def power_of_two(values: Array) -> float:
 
 
 def without_residue(values: Array, terms: Array) -> Array:
-    """Sums, (n_instants,), with zero for sums that are rounding errors of their terms.
+    """Sums, (n_instants,), with zero in place of rounding errors of their terms.
 
     `terms` are sizes of the terms, of any shape, in the unit of the sums.
     """
@@ -123,7 +123,7 @@ def without_residue(values: Array, terms: Array) -> Array:
 
 
 def separated(load: Array) -> tuple[Array, Array]:
-    """Loads (n, n_instants) as patterns (n, rank) times courses (rank, n_instants).
+    """Factor loads, (n, n_instants): patterns (n, rank) times (rank, n_instants).
 
     The product is exact up to rounding.
 

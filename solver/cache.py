@@ -1,4 +1,4 @@
-"""Results that are kept between runs: what a slider of load or friction leaves alone.
+"""Cache of results between runs: those that load and friction do not change.
 
 A run that follows another one often has the same bodies on the same mesh. What depends
 on these alone is found again by its key: by everything that it was made from, so that a
@@ -27,7 +27,7 @@ Result = TypeVar("Result")
 
 
 class Cache:
-    """Results by key, the last ones that fit into some memory.
+    """Cache of results by key, with a limit on memory: the oldest results go first.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Cache:
         self._lock = Lock()
 
     def get(self, key: Hashable, make: Callable[[], Result]) -> Result:
-        """Result of a key: the one that is kept, or else a new one.
+        """Result of a key: from the cache, or made and stored.
 
         Parameters
         ----------
@@ -69,7 +69,7 @@ class Cache:
         return result
 
     def _keep(self, key: Hashable, result: object, size: int) -> None:
-        """Keep a result of a size in B, and drop the oldest ones that no longer fit."""
+        """Store a result of a size in B, and drop the oldest that no longer fit."""
         with self._lock:
             # Another thread may have kept the same result meanwhile.
             self.nbytes += size - self._sizes.get(key, 0)
@@ -93,7 +93,7 @@ def _size_of(result: object) -> int:
 
 
 CACHE = Cache(LARGEST)
-"""The kept results of this process."""
+"""The cache of this process."""
 
 
 def content_of(*fields: NDArray[Any] | sparse.sparray) -> bytes:

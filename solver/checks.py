@@ -40,7 +40,7 @@ class Kind(Protocol):
 
     @property
     def allowed(self) -> str:
-        """Words on these values."""
+        """Description of the allowed values, for messages."""
 
     def flaw(self, value: Any) -> Flaw | None:
         """Find the flaw of a value; None if there is none."""
@@ -78,7 +78,7 @@ def check_value(name: str, value: object, kind: Kind) -> None:
 
 
 def checked_copies(part: Made, count: int, **fields: Sequence[object]) -> list[Made]:
-    """Make a count of parts that are like a checked one but for some fields.
+    """Copies of a checked part, each with values of its own for some fields.
 
     To check hundreds of bodies one by one takes as long as the first iterations on
     them. So values of these fields, one for each new part, are checked before, together
@@ -124,7 +124,7 @@ class Number:
 
     @property
     def allowed(self) -> str:
-        """Words on these values."""
+        """Description of the allowed values, for messages."""
         words = f"a number{_range(self.low, self.high, above=self.above)}"
         if self.endless:
             return f"{words}, or infinity"
@@ -151,7 +151,7 @@ class Count:
 
     @property
     def allowed(self) -> str:
-        """Words on these values."""
+        """Description of the allowed values, for messages."""
         return f"a whole number{_range(self.low, self.high)}"
 
     def flaw(self, value: Any) -> Flaw | None:
@@ -186,7 +186,7 @@ class Numbers:
 
     @property
     def allowed(self) -> str:
-        """Words on these values."""
+        """Description of the allowed values, for messages."""
         kind = "numbers"
         if self.whole:
             kind = "whole numbers"
@@ -212,7 +212,7 @@ class Numbers:
         return self._first_flaw(value)
 
     def _has_only_allowed(self, value: Any) -> bool:
-        """Check whether all numbers of an array are allowed, in as few passes as do."""
+        """Check whether all numbers of an array are allowed."""
         if self.low == -math.inf and self.high == math.inf:
             # Whole numbers are finite.
             return self.whole or bool(np.isfinite(value).all())
@@ -273,14 +273,14 @@ class IncreasingInstants:
 
 
 class InstanceOf:
-    """Values of some types."""
+    """Instances of some types."""
 
     def __init__(self, *types: type) -> None:
         self._types = types
 
     @property
     def allowed(self) -> str:
-        """Words on these values."""
+        """Description of the allowed values, for messages."""
         names = [kind.__name__ for kind in self._types]
         return " or ".join(names).replace("NoneType", "None")
 
@@ -297,13 +297,13 @@ class InstanceOf:
 
 @dataclass(frozen=True)
 class Choice:
-    """Names out of some."""
+    """Names from a given list."""
 
     names: tuple[str, ...]
 
     @property
     def allowed(self) -> str:
-        """Words on these values."""
+        """Description of the allowed values, for messages."""
         return ", ".join(self.names)
 
     def flaw(self, value: Any) -> Flaw | None:
@@ -338,14 +338,14 @@ class Function:
 
 
 class AnyOf:
-    """Values of one of some kinds; of other values the last kind finds the flaw."""
+    """Values of any of some kinds; the last kind describes the flaw of other values."""
 
     def __init__(self, *kinds: Kind) -> None:
         self._kinds = kinds
 
     @property
     def allowed(self) -> str:
-        """Words on these values."""
+        """Description of the allowed values, for messages."""
         return ", or ".join(kind.allowed for kind in self._kinds)
 
     def flaw(self, value: Any) -> Flaw | None:
@@ -362,14 +362,14 @@ class AnyOf:
 
 @dataclass(frozen=True)
 class SequenceOf:
-    """Sequences of values of one kind: of a length, or of any but zero."""
+    """Sequences of values of one kind: of a given length, or of any except zero."""
 
     kind: Kind
     length: int | None = None
 
     @property
     def allowed(self) -> str:
-        """Words on these values."""
+        """Description of the allowed values, for messages."""
         count = "one or more"
         if self.length is not None:
             count = str(self.length)
@@ -390,14 +390,14 @@ class SequenceOf:
 
 @dataclass(frozen=True)
 class MappingOf:
-    """Mappings from names to values of one kind; without `names` all are allowed."""
+    """Mappings from names to values of one kind; any names if `names` is None."""
 
     kind: Kind
     names: tuple[str, ...] = ()
 
     @property
     def allowed(self) -> str:
-        """Words on these values."""
+        """Description of the allowed values, for messages."""
         names = ""
         if self.names:
             names = f" of {', '.join(self.names)}"
@@ -428,7 +428,7 @@ FUNCTION = Function()
 
 
 def _range(low: float, high: float, *, above: bool = False) -> str:
-    """Words on a range of numbers."""
+    """Description of a range of numbers."""
     if low == -math.inf:
         if high < math.inf:
             return f" up to {plain(high)}"
@@ -446,7 +446,7 @@ def _written(shape: Sequence[int | None]) -> str:
 
 
 def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
-    """Check whether a shape is a wanted one, in which None is any size."""
+    """Check whether a shape is the expected one, in which None is any size."""
     if len(shape) != len(wanted):
         return False
     for size, allowed in zip(shape, wanted, strict=True):
@@ -456,7 +456,7 @@ def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
 
 
 def _described(value: object) -> object:
-    """Value as it is shown; of an object its type and its length."""
+    """Value as messages show it; of an object its type and its length."""
     if value is None or isinstance(value, str | int | float):
         return value
     name = type(value).__name__

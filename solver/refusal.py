@@ -1,4 +1,4 @@
-"""Refusals: messages with the name, the value, what is allowed, and a remedy."""
+"""Refusals: messages with name, value, allowed values, and a remedy."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ NUMBER = float | Real
 
 
 class Words(str):
-    """Words on a value that is too large to show; a message has them without quotes."""
+    """Description of a value too large to show; messages have it without quotes."""
 
     __slots__ = ()
 
 
 class RefusedError(ValueError):
-    """Refused value: a message of its name, the value, what is allowed and a remedy."""
+    """Refused value: a message with name, value, allowed values and a remedy."""
 
     def __init__(self, name: str, value: object, allowed: str, remedy: str) -> None:
         shown = _shown(value)
@@ -36,7 +36,7 @@ class RefusedError(ValueError):
 
 
 def _shown(value: object) -> str:
-    """Text of a value as one types it."""
+    """Text of a value as a user types it."""
     if isinstance(value, Words):
         return value
     try:
@@ -46,7 +46,7 @@ def _shown(value: object) -> str:
 
 
 def plain(value: float) -> str:
-    """Text of a number as one types it: 1e15, and not 1e+15."""
+    """Text of a number as a user types it: 1e15, and not 1e+15."""
     if isinstance(value, int):
         text = str(value)
     else:
@@ -55,5 +55,5 @@ def plain(value: float) -> str:
 
 
 def is_number(value: object) -> TypeGuard[float]:
-    """Check whether a value is a number, and no truth value."""
+    """Check whether a value is a number, and not a truth value."""
     return isinstance(value, NUMBER) and not isinstance(value, bool)

@@ -163,7 +163,7 @@ class Arrows:
 
     @cached_property
     def _longest(self) -> int:
-        """Number of the longest arrow; of several the middle one, at all instants.
+        """Index of the longest arrow; of several the middle one, at all instants.
 
         Those at the ends may be near to the arrow of another load.
         """

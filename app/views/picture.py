@@ -244,7 +244,7 @@ class Picture:
 
     @cached_property
     def _at_break(self) -> Array:
-        """Numbers of the nodes on both sides of a break, (2, 2); (0, 2) without one."""
+        """Indices of the nodes on both sides of a break, (2, 2); (0, 2) without one."""
         if self.description.broken is None:
             return np.zeros((0, 2), dtype=np.intp)
         body, position = self.description.broken

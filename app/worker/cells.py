@@ -50,9 +50,9 @@ class Drawing:
     Attributes
     ----------
     part
-        Number of the substructure.
+        Index of the substructure.
     numbers
-        Numbers of the nodes among those of all bodies, (n,).
+        Indices of the nodes among those of all bodies, (n,).
     positions
         Where the nodes are drawn, (n, 2), m: a band has two for each node of its line.
     cells
@@ -61,7 +61,7 @@ class Drawing:
     rings
         Closed lines round the cells, the first of these nodes again at the end.
     cell_of_elements
-        Number of the cell that each element lies in, (n_elements,).
+        Index of the cell that each element lies in, (n_elements,).
     """
 
     part: int
@@ -149,7 +149,7 @@ def joined(drawings: Sequence[Drawing]) -> dict[str, Any]:
 
 
 def cells_of(drawings: Sequence[Drawing]) -> Indices:
-    """Number of the cell of each element among those of all drawings, (n_elements,)."""
+    """Index of the cell of each element among those of all drawings, (n_elements,)."""
     numbers = []
     first = 0
     for drawing in drawings:

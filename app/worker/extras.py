@@ -24,7 +24,7 @@ from solver.latin import Iterate
 from solver.reduction.sizes import Sizes, of_bases, of_clips
 from solver.reduction.svd import decompositions
 from solver.reference.assembly import NoReferenceError
-from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
+from solver.reference.shakedown import SlipSpace, persistent_slips, slip_space
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError
 from solver.study.comparison import Comparison, OtherResults
@@ -95,7 +95,7 @@ def slips(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Floats]
     law = stacked.law
     ends = cycle_ends(sampled.settings)
     if len(ends) > 1:
-        room = room_of_two(space, slice(ends[-2], ends[-1] + 1))
+        room = persistent_slips(space, slice(ends[-2], ends[-1] + 1))
     else:
         room = np.zeros((0, 2))
     moved = np.cumsum(law.mean_by_point(slip), axis=1)

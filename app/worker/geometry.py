@@ -58,7 +58,7 @@ class Drawn:
         mesh: dict[str, Any],
         positions: Array,
     ) -> None:
-        # Numbers of the shown contact points among all, a degree of freedom of the node
+        # Indices of the shown contact points among all, a degree of freedom of the node
         # at each, and numbers of their interfaces.
         contacts = problem.contacts
         kept = [thinned(size, MOST_POINTS) for size in contacts.sizes.tolist()]

@@ -67,7 +67,7 @@ class Pieces:
     parts: Indices
     """Piece of each corner, from 0, (n_corners,)."""
     substructures: Indices
-    """Number of the substructure of each piece, (n_pieces,)."""
+    """Index of the substructure of each piece, (n_pieces,)."""
     joints: Indices
     """Joint of each side, from 0, ascending, (n_sides,)."""
     names: Sequence[str]

@@ -63,7 +63,7 @@ class OuterWires(NamedTuple):
     def angle(self, wire: Array, position: Array) -> Array:
         """Polar angle of wires, rad, at positions along the strand, m.
 
-        Numbers of the wires and positions have the shape of the result, or are scalars.
+        Indices of the wires and positions have the shape of the result, or are scalars.
         """
         turned = position * np.tan(self.lay) / self.helix
         return np.asarray(2.0 * np.pi * wire / self.count + turned)

@@ -26,7 +26,7 @@ LIMIT = 24_000_000
 FIRST = 16
 RECENT = 16
 MOST = 48
-"""Numbers of the first and of the newest iterates, none of which is left out, and of
+"""Indices of the first and of the newest iterates, none of which is left out, and of
 all that are kept."""
 LARGEST = 20_000
 """Largest number of degrees of freedom for which the stiffness at a point is found: its
@@ -241,7 +241,7 @@ def _fields(
 
 
 def _chosen(trail: Trail, iterate: Iterate, law: Contact, needs: Needs) -> int:
-    """Number of the selected point, or of one in the middle of what slips.
+    """Index of the selected point, or of one in the middle of what slips.
 
     It is taken at the instant at which friction takes most energy; where nothing slips
     it is that of the largest friction.

@@ -75,7 +75,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _exit_code(arguments: Sequence[str] | None) -> int:
-    """Run a command; errors that its user can mend become messages and exit codes."""
+    """Run a command; errors that a user can correct become messages, exit codes."""
     parser = _parser()
     chosen, options = parser.parse_known_args(arguments)
     if options and not hasattr(chosen, "passed_on"):
@@ -231,7 +231,7 @@ def _solved(
     limit: float,
     spent: float,
 ) -> Solution:
-    """Solution of a problem, as a whole or in slabs, with errors to a known reference.
+    """Solve a problem as a whole or in slabs, with errors to a known reference.
 
     `spent` is the time that the problem took to make, s.
     """
@@ -273,7 +273,7 @@ def _print_figures(
     tables: Mapping[str, str],
     as_json: bool,
 ) -> None:
-    """Print the results of a run; no key figures where the solution is lost."""
+    """Print the results of a run; no key figures if the solution ends early."""
     figures = summary(run.settings, run.solution)
     of_loop: Sequence[KeyFigure] = ()
     of_run: Sequence[Quantity] = ()
@@ -318,7 +318,7 @@ def _print_lines(figures: Mapping[str, object]) -> None:
 
 
 def _loss(problem: Problem, first: int) -> float:
-    """Warn that the solution is lost from an instant on; return that time, s."""
+    """Warn that there is no solution from an instant on; return that time, s."""
     count = problem.n_instants
     time_lost = float(problem.instants[first])
     lost = f"no solution is found at {count - first} of {count} instants"
@@ -327,7 +327,7 @@ def _loss(problem: Problem, first: int) -> float:
 
 
 def _in_words(run: FinishedRun, figure: KeyFigure) -> str:
-    """Words on a key figure: its largest value with its time, and its last value."""
+    """Text of a key figure: its largest value with its time, and its last value."""
     at = f"at {run.problem.instants[figure.instant]:.6g} s"
     largest = _number(figure.largest, figure.unit)
     last = _number(figure.last, figure.unit)
@@ -346,14 +346,14 @@ def _key_figure_entry(run: FinishedRun, figure: KeyFigure) -> dict[str, object]:
 
 
 def _number(value: float, unit: str) -> str:
-    """Words on a number with its unit."""
+    """Text of a number with its unit."""
     if math.isnan(value):
         return "none"
     return f"{value:.6g} {unit}".strip()
 
 
 def _known(problem: Problem, limit: float) -> KnownReference:
-    """Reference within a time limit, s; warn of its doubts, or that it is missing."""
+    """Find the reference within a time limit, s; warn if there is none, or doubt."""
     end = time.perf_counter() + limit
     known = known_reference(problem, lambda: time.perf_counter() > end)
     if known.reference is None:

@@ -54,7 +54,7 @@ def add_command(
 
 
 def given(chosen: argparse.Namespace) -> tuple[Settings, Mapping[str, str]]:
-    """Settings that a command is given, and messages on their tables by name.
+    """Settings in the arguments of a command, and messages on their tables by name.
 
     The messages are printed, too, and a warning of settings that do not apply.
     """
@@ -65,7 +65,7 @@ def given(chosen: argparse.Namespace) -> tuple[Settings, Mapping[str, str]]:
 
 
 def read_brought(chosen: argparse.Namespace, allowed: str) -> Table:
-    """Table of the file that `--with` names, which may be a series for ParaView."""
+    """Read the table of the option `--with`: a file, or a series for ParaView."""
     refuse = partial(SettingError, "--with", str(chosen.file), allowed)
     data: bytes | str = read_bytes(chosen.file, refuse)
     if chosen.file.suffix == PARAVIEW:
@@ -82,11 +82,11 @@ def warn(*messages: str) -> None:
 
 @contextlib.contextmanager
 def postponed_interrupt() -> Iterator[Callable[[], bool]]:
-    """Postpone Ctrl-C to the end of the body, which asks whether it was pressed.
+    """Context that postpones Ctrl-C to its end, and tells whether it was pressed.
 
     `KeyboardInterrupt` may come between any two steps of the main thread, and leave a
-    lock of a library taken, or a process half started. Who presses twice, since a
-    process takes a second to start, presses once.
+    lock of a library taken, or a process half started. A second press, since a
+    process takes a second to start, counts as the first.
 
     Yields
     ------
@@ -171,7 +171,7 @@ def announce(
 
 @contextlib.contextmanager
 def refusing(out: Path, allowed: str) -> Iterator[None]:
-    """Refuse a file or folder if the body of the statement cannot write to it."""
+    """Context in which a failure to write becomes a refusal of the file or folder."""
     try:
         yield
     except BrokenPipeError:
@@ -182,7 +182,7 @@ def refusing(out: Path, allowed: str) -> Iterator[None]:
 
 @contextlib.contextmanager
 def writing(folder: Path, *files: str) -> Iterator[None]:
-    """Make a folder for files; refuse at once one that cannot be made or written to.
+    """Context with a folder for files; refuse a folder that cannot be written to.
 
     A new folder that is empty at the end is removed.
     """

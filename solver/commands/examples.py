@@ -1,4 +1,4 @@
-"""The command `example`: write a script of `solver/examples` beside the user."""
+"""The command `example`: write a script of `solver/examples` to a folder."""
 
 from __future__ import annotations
 

@@ -113,7 +113,7 @@ def _mesh(chosen: argparse.Namespace) -> int:
 
 
 def _on_instants(settings: Settings, instants: Refinement, asked: Quantity) -> str:
-    """Sentences on numbers of instants, and on steps that none of them divides."""
+    """Sentences on the numbers of instants, and on steps that no number divides."""
     return f"{answer(instants, asked.unit, TIME_STEP)} {undivided(settings)}".rstrip()
 
 
@@ -184,7 +184,7 @@ def _warn_of_doubts(
     solution: Solution,
     figures: dict[str, Any],
 ) -> None:
-    """Warn of a distance that is none, as a solution is lost, or of doubtful units.
+    """Warn of doubtful units, and of a distance that a lost solution does not have.
 
     Distances of a lost solution become NaN.
     """

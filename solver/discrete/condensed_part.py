@@ -49,7 +49,7 @@ class PartForce(NamedTuple):
 
     @classmethod
     def over_time(cls, force: Array) -> PartForce:
-        """Forces, (n, n_instants), with a pattern for each instant."""
+        """Forces, (n, n_instants), as one pattern for each instant."""
         return cls(force, np.eye(force.shape[1]))
 
     def at(self, instants: slice | list[int]) -> Array:
@@ -58,7 +58,7 @@ class PartForce(NamedTuple):
 
 
 def kept_by(traces: Sequence[Trace]) -> Indices:
-    """Degrees of freedom of a part at boundary rows, ascending, shape (n,)."""
+    """Degrees of freedom of a part under its boundary rows, ascending, shape (n,)."""
     return np.unique(np.concatenate([trace.dofs.ravel() for trace in traces]))
 
 
@@ -97,7 +97,7 @@ class Operator:
 def numbered(
     traces: Mapping[Hashable, Trace], first: int
 ) -> tuple[dict[Hashable, int], int]:
-    """First row of each trace, counted from `first`, and the number after the last."""
+    """First row of each trace, counted from `first`, and the row after the last."""
     first_rows: dict[Hashable, int] = {}
     for name, trace in traces.items():
         first_rows[name] = first
@@ -106,7 +106,7 @@ def numbered(
 
 
 class PartMesh(Protocol):
-    """Mesh of a part, in axes of its own."""
+    """Mesh of a part, in the axes of the part."""
 
     @property
     def n_axes(self) -> int:
@@ -114,7 +114,7 @@ class PartMesh(Protocol):
 
     @property
     def elements(self) -> Indices:
-        """Corners of every element among its own nodes, shape (n_elements, 4).
+        """Corners of every element, as indices of the part's nodes, (n_elements, 4).
 
         Triangles have their last corner twice, beams both ends twice.
         """
@@ -127,19 +127,19 @@ class PartMesh(Protocol):
 
 
 class CondensedPart(NamedTuple):
-    """A part of a body, whose inside is condensed.
+    """A part of a body, whose inner degrees of freedom are condensed.
 
     Attributes
     ----------
     mesh, operator
         Its mesh and operator, which equal parts share.
     nodes
-        Numbers of its nodes among those of all bodies: of a rectangle shape (n_rows,
+        Indices of its nodes among those of all bodies: of a rectangle shape (n_rows,
         n_columns), of others (n_nodes,).
     body
-        Number of its body.
+        Index of its body.
     traces, first_rows
-        Boundary rows by what has them, and the number of the first row of each. Rows of
+        Boundary rows by what has them, and the index of the first row of each. Rows of
         a trace follow each other, node by node, and so do those of parts.
     force
         Forces on its degrees of freedom, or None.
@@ -167,7 +167,7 @@ class CondensedPart(NamedTuple):
         return self.operator.condensed
 
     def rows(self, name: Hashable) -> Indices:
-        """Numbers of the rows of a trace, shape (n_nodes, n_components)."""
+        """Indices of the rows of a trace, shape (n_nodes, n_components)."""
         dofs = self.traces[name].dofs
         return self.first_rows[name] + np.arange(dofs.size).reshape(dofs.shape)
 
@@ -180,14 +180,14 @@ class CondensedPart(NamedTuple):
         return self.frames.reshape(-1, N_AXES)
 
     def motion(self, moved: Array) -> Array:
-        """Displacement of its nodes, (n_nodes, 2, n_columns), from (n, n_columns)."""
+        """Displacement of the nodes, (n_nodes, 2, n_columns), from (n, n_columns)."""
         if self.frames is None:
             return moved.reshape(-1, 2, moved.shape[1])
         own = moved.reshape(*self.frames.shape[:2], -1)
         return np.asarray(self.frames[:, :, :2].swapaxes(1, 2) @ own)
 
     def forces(self, nodal: Array) -> Array:
-        """Forces on its degrees of freedom, (n,), from those on nodes, (n_nodes, 2)."""
+        """Forces on the degrees of freedom, (n,), from those on nodes, (n_nodes, 2)."""
         if self.frames is None:
             return nodal.ravel()
         return np.asarray((self.frames[:, :, :2] @ nodal[:, :, None]).ravel())

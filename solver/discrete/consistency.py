@@ -21,7 +21,7 @@ from solver.refusal import RefusedError, Words
 def check_cover(
     owners: str, what: str, count: int, parts: list[Indices], *, once: bool = False
 ) -> None:
-    """Refuse parts that do not have all numbers from 0 to `count` - 1.
+    """Refuse parts that do not cover all indices from 0 to `count` - 1.
 
     With `once`, refuse numbers that occur more than once, too.
     """
@@ -55,7 +55,7 @@ def check_cover(
 
 
 def check_names(contacts: Contacts) -> None:
-    """Refuse names that interfaces share, and an order without some of them."""
+    """Refuse names of several interfaces, and an order that omits an interface."""
     names = contacts.names_of_laws
     if len(set(names)) < len(names) or sorted(contacts.names) != sorted(names):
         raise RefusedError(

@@ -1,4 +1,4 @@
-"""Interfaces with friction: how their fields are stacked, and fields of each."""
+"""Interfaces with friction: the order of their stacked fields, and their fields."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ NO_SLIP = 1e-9
 
 
 class Stacked(NamedTuple):
-    """A law of contact, and where its interfaces stand among all.
+    """A law of contact, with the indices of its interfaces in the stacked fields.
 
     Attributes
     ----------
     law
         Law of one interface, or of several.
     numbers
-        Numbers of its interfaces among all those with friction, shape (n_interfaces,).
+        Indices of its interfaces among all those with friction, shape (n_interfaces,).
     points
-        Numbers of its points among those of all, shape (n_points,).
+        Indices of its points among those of all, shape (n_points,).
     forces
-        Numbers of the forces of its points among all contact forces, component by
+        Indices of the forces of its points among all contact forces, component by
         component, (n_points,) each.
     """
 
@@ -94,12 +94,12 @@ class Contacts(Mapping[str, Contact]):
 
     @cached_property
     def number_of(self) -> dict[str, int]:
-        """Number of each interface in the order in which they are stacked."""
+        """Index of each interface in the order in which they are stacked."""
         return {name: number for number, name in enumerate(self.names)}
 
     @cached_property
     def stacks(self) -> list[Stacked]:
-        """Laws, and where their interfaces, points and forces stand among all."""
+        """Laws, with the indices of their interfaces, points and forces among all."""
         first_points = np.cumsum(self.sizes) - self.sizes
         n_forces = self.sizes * self._n_components
         first_forces = np.cumsum(n_forces) - n_forces
@@ -107,7 +107,7 @@ class Contacts(Mapping[str, Contact]):
         for key, law in self.laws.items():
             numbers = np.array([self.number_of[name] for name in law.names or (key,)])
             sizes = law.sizes
-            # Numbers of the points of each interface within it.
+            # Indices of the points of each interface within it.
             within = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
             firsts = np.repeat(first_forces[numbers], sizes) + within
             steps = np.repeat(sizes, sizes)
@@ -203,7 +203,7 @@ class Contacts(Mapping[str, Contact]):
         return sparse.csr_array((np.ones(len(entries[0])), entries), shape=shape)
 
     def of_points(self, fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
-        """Fields of the points of each of `stacks`, (n_points, ...), stacked.
+        """Stack fields of the points of each of `stacks`, (n_points, ...).
 
         Fields that do not change with time have a single column; so has the result if
         none of them changes.
@@ -230,14 +230,14 @@ class Contacts(Mapping[str, Contact]):
 
 
 class ContactGroup:
-    """Interfaces of one law, concatenated, as a wall of bricks has thousands.
+    """Interfaces of one law as concatenated arrays: a wall of bricks has thousands.
 
     Attributes
     ----------
     law
         Law of all of them; without macro basis if they are several.
     numbers
-        Numbers of the interfaces among all those with friction, shape (n_interfaces,).
+        Indices of the interfaces among all those with friction, shape (n_interfaces,).
     points
         Numbers of their points among those of all interfaces with friction, shape
         (n_points,).
@@ -332,7 +332,7 @@ class ContactGroup:
 
 
 def _carries(normal: Array, tangential: Array, least: float) -> NDArray[np.bool_]:
-    """Check which points of contact are pressed together, and not by rounding alone.
+    """Mask of points of contact that carry more than rounding errors.
 
     Where bodies come apart, or begin to touch, rounding presses at some points. A bond
     that nothing presses carries friction. Pressing and friction forces have the same
@@ -367,7 +367,7 @@ class ContactFields:
     status: NDArray[np.int8]
 
     def at(self, points: slice) -> ContactFields:
-        """Fields of a range of the points."""
+        """Fields restricted to a range of the points."""
         if self.normal_force is None or self.opening is None:
             normal_force = None
             opening = None

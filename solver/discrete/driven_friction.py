@@ -1,4 +1,4 @@
-"""Friction of driven points, whose slip is made by prescribed displacements alone.
+"""Friction of driven points: prescribed displacements determine their slip.
 
 At a driven point only the sum of friction and reaction is determinate, and a method
 that searches for both shares it out by its own parameters. While the point slips, its
@@ -39,12 +39,12 @@ class DrivenFriction:
     noise
         Largest growth of the jump that may be rounding, scaled.
     beside, share
-        Position in a stack of contact forces of the friction of the nearest point that
-        is free to slip, (n_points,), and area of a point over the area of that point; 0
-        without one.
-    rubbing, pressing
-        Positions in a stack of contact forces, (n_points,), of the friction forces and
-        of the pressing forces; None for the latter where the pressure is known.
+        Index, in stacked contact forces, of the friction of the nearest point that is
+        free to slip, (n_points,), and area of a point over the area of that point; 0
+        if no point is free.
+    tangential, normal
+        Indices of the friction forces, and of the normal forces, in stacked contact
+        forces, (n_points,); `normal` is None where the pressure is known.
     normal_rows, gap
         Normal rows of the first pairs, of one or both sides, (n_points,) each, and
         opening of the undeformed bodies, (n_points,), scaled, where the pressure is not
@@ -57,8 +57,8 @@ class DrivenFriction:
     noise: float
     beside: Indices
     share: Array
-    rubbing: Indices
-    pressing: Indices | None = None
+    tangential: Indices
+    normal: Indices | None = None
     normal_rows: tuple[Indices, ...] = ()
     gap: Array | None = None
 
@@ -69,8 +69,8 @@ class DrivenFriction:
         all rows, (n_rows, n_instants), both scaled.
         """
         pressing = None
-        if self.pressing is not None:
-            pressing = forces[self.pressing]
+        if self.normal is not None:
+            pressing = forces[self.normal]
         opening = self._opening(displacement)
         if self.along.compliance is not None:
             return self._on_springs(pressing, opening)
@@ -87,14 +87,14 @@ class DrivenFriction:
         return np.where(np.abs(slip) > self.noise, slip, 0.0)
 
     def _opening(self, displacement: Array) -> Array | None:
-        """Opening, (n_points, n_instants), scaled; None where it breaks no bond."""
+        """Opening, (n_points, n_instants), scaled; None for laws without bonds."""
         if self.gap is None or not self.along.bound.any():
             return None
         jump = _difference([displacement[rows] for rows in self.normal_rows])
         return np.asarray(jump + self.gap[:, None])
 
     def _on_springs(self, pressing: Array | None, opening: Array | None) -> Array:
-        """Friction force where a spring is in series, whose compression determines it.
+        """Friction force where springs in series are compressed, (n_points, n).
 
         Parameters and force are (n_points, n_instants), scaled.
         """
@@ -117,7 +117,7 @@ def driven_contacts(
     prescribed: tuple[Indices, Array],
     largest: float,
 ) -> list[DrivenFriction]:
-    """Friction of driven points, interface by interface; arguments as those below."""
+    """Friction of driven points of all interfaces; parameters as `driven_friction`."""
     is_held = np.isin(row_dofs, prescribed[0])
     numbers = [np.zeros(0, dtype=np.intp)]
     for stacked in contacts.stacks:
@@ -142,7 +142,7 @@ def driven_friction(
     prescribed: tuple[Indices, Array],
     largest: float,
 ) -> DrivenFriction | None:
-    """Friction of the driven points of an interface; None where it has none.
+    """Friction of the driven points of an interface; None without driven points.
 
     `slices` are the slices of its components in a stack of contact forces, `row_dofs`
     the degrees of freedom of all rows, (n_rows,), and `prescribed` those whose
@@ -171,21 +171,21 @@ def driven_friction(
         noise=ROUNDING * largest,
         beside=slices[-1].start + nearest,
         share=share,
-        rubbing=slices[-1].start + points,
+        tangential=slices[-1].start + points,
     )
     if law.normal is None:
         return driven
     normal_sides = law.normal.component.sides
     return replace(
         driven,
-        pressing=slices[0].start + points,
+        normal=slices[0].start + points,
         normal_rows=tuple([rows[pairs[points]] for rows in normal_sides]),
         gap=law.mean_by_point(law.normal.gap)[points],
     )
 
 
 def _difference(sides: list[Array]) -> Array:
-    """Field above minus that below, (n_points, n_instants), or that of one side."""
+    """Field above minus field below, (n_points, n_instants); or of the only side."""
     if len(sides) == 1:
         return sides[0]
     above, below = sides
@@ -193,7 +193,7 @@ def _difference(sides: list[Array]) -> Array:
 
 
 def _law_of_points(law: Contact, points: Indices, pairs: Indices) -> Friction:
-    """Friction law of some points, with one pair for each; (n_points,) both."""
+    """Friction law of some points, of which each has one pair; (n_points,) both."""
     friction = law.tangential
     cap = None
     if friction.cap is not None:

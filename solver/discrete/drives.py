@@ -62,7 +62,7 @@ class Drive:
         return abs(float(self.values[instant])) < abs(self.before(instant))
 
     def describe(self, instant: int, share: float = 1.0) -> str:
-        """Text on the value after a share of the step to an instant.
+        """Text of the value after a share of the step to an instant.
 
         With the load factor: the value over the largest one of the same sign.
         """
@@ -79,7 +79,7 @@ class Drive:
 
 
 def describe_loads(drives: Sequence[Drive], instant: int) -> str:
-    """Text on all drives that change, with their values at an instant.
+    """Text of all drives that change in the step to an instant, with their values.
 
     Empty where no drive changes.
     """
@@ -88,7 +88,7 @@ def describe_loads(drives: Sequence[Drive], instant: int) -> str:
 
 
 def describe_limit(drives: Sequence[Drive], instant: int, share: float) -> str:
-    """Text on the loads beyond which something happens.
+    """Text of the loads at a limit, after a share of the step to an instant.
 
     These are the loads after a share of the step to an instant: "beyond" those that
     grow, "below" those that fall. Where loads begin together and the share is zero, all

@@ -137,7 +137,7 @@ class Rectangle:
 
     @cached_property
     def nodes(self) -> Indices:
-        """Number of every node, shape (rows + 1, columns + 1), from below."""
+        """Index of every node, shape (rows + 1, columns + 1), from below."""
         shape = self.rows + 1, self.columns + 1
         return np.arange(self.n_nodes, dtype=np.intp).reshape(shape)
 

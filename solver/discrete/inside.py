@@ -1,4 +1,4 @@
-"""Substructures of bodies in the plane, and the fields inside them."""
+"""Substructures of bodies in the plane, and the fields in their interior."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ MOVES = 1e-6
 
 
 class Inside:
-    """Nodes and elements inside condensed substructures, and fields there on demand.
+    """Interior nodes and elements of condensed substructures, and fields on demand.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Inside:
     dofs
         Degrees of freedom of the problem that each substructure keeps, (n_kept,) each.
     nodes_of_dofs
-        Number of the node of every degree of freedom of the problem, (n_dofs,).
+        Index of the node of every degree of freedom of the problem, (n_dofs,).
     positions, directions
         Its position, (n_dofs, 2), scaled, and its motion along x and y and its turn,
         (n_dofs, 3): a unit vector.
@@ -77,7 +77,7 @@ class Inside:
         self.parts: Indices = np.repeat(np.arange(len(parts)), sizes)
 
     def _find_skeleton(self, nodes: Indices, first_nodes: Indices) -> None:
-        """Number the degrees of freedom that any part keeps.
+        """Number the degrees of freedom that remain after condensation in any part.
 
         `nodes` are those of all parts, part by part, and `first_nodes` the places of
         the first of each part.
@@ -96,7 +96,7 @@ class Inside:
         self.directions: Array = _directions(self._parts, counts, of_parts)[first]
 
     def substructures(self) -> tuple[Substructure, ...]:
-        """Substructures of the problem, part by part, and so are their rows."""
+        """Substructures of the problem; their rows are numbered part by part."""
         operators = [part.operator for part in self._parts]
         sizes = [len(operator.elasticity.trace) for operator in operators]
         rows = _divided(np.arange(sum(sizes)), sizes)
@@ -132,7 +132,7 @@ class Inside:
         return whole * self._length
 
     def adjoint(self, weights: Array) -> tuple[Array, Array]:
-        """Bring a weighted sum of all nodes' displacements onto the degrees of freedom.
+        """Weights on degrees of freedom of a weighted sum of all nodes' displacements.
 
         `weights` are those of the nodes, (n_nodes, 2). Returned are those of the
         problem's degrees of freedom, (n_dofs,), and the part of the sum that loads
@@ -158,7 +158,7 @@ class Inside:
         return total, constant * self._length
 
     def of_part(self, number: int, nodes: Indices) -> tuple[Array, Array | None]:
-        """Map from a substructure's degrees of freedom to the motion of its nodes.
+        """Matrix from degrees of freedom of a substructure to nodal displacements.
 
         `nodes` are numbers among its own in the order of its grid, (n,). The matrix has
         shape (2 n, n_kept). Loads inside add a displacement, shape (2 n, n_instants),
@@ -187,12 +187,12 @@ class Inside:
 
     @property
     def is_of_lines(self) -> bool:
-        """Check whether all bodies are lines of beams, whose nodes turn."""
+        """Check whether all bodies are lines of beams, whose nodes have rotations."""
         return all(part.mesh.n_axes == N_AXES for part in self._parts)
 
     @cached_property
     def body_of_dofs(self) -> Indices:
-        """Number of the body of every degree of freedom of the problem, (n_dofs,)."""
+        """Index of the body of every degree of freedom of the problem, (n_dofs,)."""
         bodies = np.empty(len(self.directions), dtype=np.intp)
         counts = [len(dofs) for dofs in self.dofs]
         of_parts = [part.body for part in self._parts]
@@ -226,12 +226,12 @@ class Inside:
     def free_groups(
         self, groups: Indices, fixed: Indices, jumps: Sequence[tuple[Indices, Indices]]
     ) -> Indices:
-        """Numbers of the groups of bodies that can move, (n,).
+        """Indices of the groups of bodies that can move, (n,).
 
         Parameters
         ----------
         groups
-            Number of the group of every degree of freedom, all bodies of which move as
+            Index of the group of every degree of freedom, all bodies of which move as
             one, shape (n_dofs,); -1 where it stands still.
         fixed
             Degrees of freedom that are held, shape (n,).
@@ -286,7 +286,7 @@ class Inside:
 def _condensed_by(
     condensed: SchurComplement, forces: Sequence[PartForce | None]
 ) -> list[Array | None]:
-    """Forces on what equal parts keep, (n_kept, n_instants) each, scaled, or None.
+    """Condensed forces of equal parts, (n_kept, n_instants) each, scaled; or None.
 
     The very same forces are condensed once, those of as many patterns some together.
     """
@@ -308,13 +308,13 @@ def _condensed_by(
 
 
 def _firsts(sizes: Sequence[int]) -> Indices:
-    """Place of the first entry of each of some lists that follow each other, (n,)."""
+    """Offset of each list in the concatenation of lists of given sizes, (n,)."""
     lengths: Indices = np.asarray(sizes, dtype=np.intp)
     return np.cumsum(lengths) - lengths
 
 
 def _divided(values: Indices, sizes: Sequence[int]) -> list[Indices]:
-    """Divide values, (n,), into lists that follow each other, of some sizes."""
+    """Split values, (n,), into consecutive lists of given sizes."""
     # NumPy's split takes five times as long for hundreds of small ones (measured).
     ends = np.cumsum([0, *sizes]).tolist()
     return [values[first:last] for first, last in pairwise(ends)]

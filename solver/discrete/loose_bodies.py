@@ -12,7 +12,7 @@ from solver.laws import Contact
 
 
 def loose_bodies(problem: Problem) -> Indices:
-    """Numbers of the bodies that can move though all contacts are closed and stick.
+    """Indices of the bodies that can move though all contacts are closed and stick.
 
     Shape (n,); empty along rods, and beside a user's law, which may hold what it likes.
     """
@@ -50,7 +50,7 @@ def _groups(bodies: Indices, tied: Indices) -> Indices:
 
 
 def _pairs_that_hold(problem: Problem, law: Contact) -> list[tuple[Indices, Indices]]:
-    """Degrees of freedom above and below that a closed contact that sticks ties.
+    """Degrees of freedom above and below that a closed, sticking contact ties.
 
     Shape (n_pairs,) each, by components; -1 is a support. A spring ties one
     component.

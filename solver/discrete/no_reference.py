@@ -1,4 +1,4 @@
-"""Reasons for which incremental solvers would misread a problem.
+"""Reasons why the incremental solvers cannot solve a problem.
 
 They read the incremental forms of all laws, one degree of freedom where rows are glued,
 and the mean of the pairs of a point: they would leave out anything else.
@@ -35,7 +35,7 @@ class Numbering(NamedTuple):
 def reason_against_reference(
     interfaces: Mapping[str, Interface], contacts: Contacts, numbering: Numbering
 ) -> str:
-    """Reason that a problem has no incremental reference, with a remedy, or ""."""
+    """Reason why a problem has no incremental reference, with a remedy, or ""."""
     forms = list[IncrementalForm]()
     for name, law in interfaces.items():
         form = law.incremental_form()
@@ -81,7 +81,7 @@ def reason_against_reference(
 
 
 def _are_glued_as_numbered(sides: Indices, numbering: Numbering) -> bool:
-    """Check whether just those rows share a degree of freedom that laws glue.
+    """Check whether rows share a degree of freedom exactly if a law glues them.
 
     `sides` are the glued rows of both sides, (2, n_glued).
     """
@@ -100,7 +100,7 @@ def _are_glued_as_numbered(sides: Indices, numbering: Numbering) -> bool:
 
 
 def _has_points(law: Contact, dofs: Indices) -> bool:
-    """Check whether pairs of one point agree in degrees of freedom, gap and mu.
+    """Check whether all pairs of a point have equal degrees of freedom, gap and mu.
 
     `dofs` are the degrees of freedom of all rows, (n_rows,).
     """
@@ -117,6 +117,6 @@ def _has_points(law: Contact, dofs: Indices) -> bool:
 
 
 def _slip_factors(contacts: Contacts) -> set[SlipFactor]:
-    """Slip-dependent factors of all interfaces on which there is any friction."""
+    """Slip-dependent factors of all interfaces with friction."""
     laws = [law.tangential for law in contacts.laws.values()]
     return {law.slip_factor or PLAIN for law in laws if law.has_friction}

@@ -58,11 +58,11 @@ class Probe:
     constant: Array | float = 0.0
 
     def __call__(self, displacement: Array) -> Array:
-        """The sum, (n_instants,), for displacements (n_dofs, n_instants), m."""
+        """Value over time, (n_instants,), for displacements (n_dofs, n_instants), m."""
         return without_residue(*self.sum_of(displacement))
 
     def sum_of(self, displacement: Array) -> tuple[Array, Array]:
-        """The sum, and the sum of the sizes of its terms, (n_instants,) both."""
+        """Sum of the terms, and sum of their absolute values, (n_instants,) both."""
         moved = displacement[self.dofs]
         sizes = np.abs(self.weights) @ np.abs(moved) + np.abs(self.constant)
         return np.asarray(self.weights @ moved + self.constant), np.asarray(sizes)
@@ -72,7 +72,7 @@ class Probe:
         return Probe(self.dofs, factor * self.weights, factor * self.constant)
 
     def of(self, fields: LoopFields) -> Array:
-        """The sum for an iterate or a reference, shape (n_instants,)."""
+        """Value for an iterate or a reference, shape (n_instants,)."""
         return self(fields.displacement)
 
 
@@ -93,7 +93,7 @@ def side_mean(problem: Problem, side: str, component: int) -> Probe:
 
 
 def mean_held(problem: Problem, name: str, axis: int) -> Probe:
-    """Mean displacement along an axis that an interface of held nodes prescribes.
+    """Mean displacement along an axis of nodes that an interface prescribes.
 
     In m along x (0) and y (1), in rad of a turn (2).
     """
@@ -131,7 +131,7 @@ def end_rotation(problem: Problem) -> Probe:
 
 @dataclass(frozen=True, eq=False)
 class Reaction:
-    """A weighted sum of the forces that hold degrees of freedom of given displacement.
+    """A weighted sum of the reactions at degrees of freedom of known displacement.
 
     The holding forces are the forces of the elements there, less loads and the contact
     forces of the same nodes (MATHEMATICS.md, 6).
@@ -149,7 +149,7 @@ class Reaction:
     contacts: Mapping[str, tuple[Array | None, Array]]
 
     def of(self, fields: LoopFields) -> Array:
-        """The sum for an iterate or a reference, (n_instants,), N or N m."""
+        """Value for an iterate or a reference, (n_instants,), N or N m."""
         values, sizes = self.elements.sum_of(fields.displacement)
         for name, weights in self.contacts.items():
             contact = fields.contact(name)
@@ -161,7 +161,7 @@ class Reaction:
         return without_residue(values, sizes)
 
     def times(self, factor: float) -> Reaction:
-        """The sum times a factor."""
+        """The reaction times a factor."""
         contacts = dict[str, tuple[Array | None, Array]]()
         for name, (normal, tangential) in self.contacts.items():
             if normal is not None:
@@ -171,7 +171,7 @@ class Reaction:
 
 
 def reaction(problem: Problem, name: str, component: int | None = None) -> Reaction:
-    """Sum of the forces that hold an interface of prescribed displacements, N.
+    """Sum of the reactions at an interface of prescribed displacements, N.
 
     In the plane those of one component are counted, 0 along x, 1 along y and 2 the
     moments, N m; along rods there is one.
@@ -184,7 +184,7 @@ def reaction(problem: Problem, name: str, component: int | None = None) -> React
 
 
 def reaction_moment(problem: Problem, name: str) -> Reaction:
-    """Moment about the origin of the forces that hold an interface in the plane, N m.
+    """Moment of the reactions at an interface in the plane about the origin, N m.
 
     Counter-clockwise, for a metre of thickness.
     """
@@ -197,7 +197,7 @@ def reaction_moment(problem: Problem, name: str) -> Reaction:
 
 
 def _weighted_reaction(problem: Problem, held: Array) -> Reaction:
-    """Sum of the reactions times `held`, weights of the dofs, (n_dofs,)."""
+    """Sum of the reactions times the weights `held` of the dofs, (n_dofs,)."""
     weights = np.zeros(problem.n_dofs)
     loads = np.zeros(problem.n_instants)
     for part in problem.substructures:
@@ -244,14 +244,14 @@ def _contacts_at(
 
 
 class AxialForce:
-    """Axial force in the elements of rods, from their displacement at some instants.
+    """Axial force in the elements of rods, from displacements at some instants.
 
     Attributes
     ----------
     positions
         Middles of the elements, (n_elements,), m.
     wires
-        Number of the rod of each element, from 0, (n_elements,).
+        Index of the rod of each element, from 0, (n_elements,).
     """
 
     def __init__(
@@ -282,7 +282,7 @@ class AxialForce:
 
 
 def _inside(problem: Problem) -> Inside:
-    """Inside of a problem of bodies in the plane, which always has one."""
+    """Interior of a problem of bodies in the plane, which always has one."""
     assert problem.inside is not None
     return problem.inside
 

@@ -121,7 +121,7 @@ class Problem:
         check_prescribed(self.prescribed_displacements, self.row_dofs)
 
     def with_drives(self, drives: tuple[Drive, ...]) -> Problem:
-        """The same problem with drives; what was checked and found stays."""
+        """The same problem with drives; checks and cached properties stay valid."""
         driven = copy(self)
         object.__setattr__(driven, "drives", drives)
         return driven
@@ -160,7 +160,7 @@ class Problem:
 
     @cached_property
     def row_dofs(self) -> Indices:
-        """Degree of freedom of the whole structure under every row, shape (n_rows,)."""
+        """Degree of freedom of the whole structure at every row, shape (n_rows,)."""
         dofs = np.empty(self.n_rows, dtype=np.intp)
         for part in self.substructures:
             dofs[part.rows] = part.dofs[part.elasticity.trace]
@@ -179,7 +179,7 @@ class Problem:
 
     @cached_property
     def laws(self) -> list[Interface]:
-        """Laws of all interfaces for the local stage, alike ones joined to one.
+        """Laws of all interfaces for the local stage; those of one kind are joined.
 
         Joined laws have no macro bases.
         """
@@ -189,7 +189,7 @@ class Problem:
                 kinds.setdefault(type(law), []).append(law)
         joined: list[Interface] = [group.law for group in self.contacts.groups]
         for kind, laws in kinds.items():
-            joined.extend(kind.together(laws))
+            joined.extend(kind.join(laws))
         return joined
 
     @cached_property
@@ -200,19 +200,19 @@ class Problem:
 
     @cached_property
     def user_laws(self) -> dict[str, Interface]:
-        """Interfaces of a user's law, without an incremental form, by name."""
+        """Interfaces of users' laws without an incremental form, by name."""
         forms = self.incremental_forms
         return {name: law for name, law in self.interfaces.items() if name not in forms}
 
     @cached_property
     def prescribed_forces(self) -> list[PrescribedRows]:
-        """Forces that are prescribed, interface by interface."""
+        """Prescribed forces, interface by interface."""
         forms = self.incremental_forms.values()
         return [form.force for form in forms if form.force is not None]
 
     @cached_property
     def prescribed_displacements(self) -> list[PrescribedRows]:
-        """Displacements that are prescribed, interface by interface."""
+        """Prescribed displacements, interface by interface."""
         forms = self.incremental_forms.values()
         return [form.displacement for form in forms if form.displacement is not None]
 
@@ -229,7 +229,7 @@ class Problem:
 
     @cached_property
     def unknown_rows(self) -> tuple[slice | Indices, list[NDArray[np.bool_]]]:
-        """Rows whose forces only a solution gives, and masks of their kinds among them.
+        """Rows whose forces are unknown before a solution, and masks of their kinds.
 
         These are the rows of the bodies above at interfaces with friction, normal ones
         as a first and tangential ones as a second kind; and all rows of users' laws as
@@ -260,13 +260,13 @@ class Problem:
 
     @cached_property
     def friction(self) -> Contact:
-        """The interface with friction of a problem that has one only."""
+        """The only interface with friction of a problem."""
         (contact,) = self.contacts.values()
         return contact
 
     @cached_property
     def contacts(self) -> Contacts:
-        """The interfaces with friction, by name and stacked."""
+        """The interfaces with friction, by name, in the order of stacked fields."""
         laws = {
             name: law
             for name, law in self.interfaces.items()
@@ -276,7 +276,7 @@ class Problem:
 
     @cached_property
     def has_start(self) -> bool:
-        """Check whether sliders begin at given positions, not at rest."""
+        """Check whether sliders have initial positions other than zero."""
         laws = self.contacts.laws.values()
         return any(law.tangential.start is not None for law in laws)
 
@@ -287,7 +287,7 @@ class Problem:
 
     @cached_property
     def macro(self) -> tuple[sparse.csr_array, Array]:
-        """Macro basis of all interfaces, and the macro forces from outside, scaled.
+        """Macro basis of all interfaces, and macro forces of external loads, scaled.
 
         P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1;
         MATHEMATICS.md, 2).
@@ -317,7 +317,7 @@ class Problem:
 
     @cached_property
     def body_force_on_rows(self) -> Array | None:
-        """Forces on the rows that do the work of all body forces, scaled, or None.
+        """Forces on the rows equivalent to all body forces, scaled, or None.
 
         Shape (n_rows, n_instants).
         """
@@ -339,14 +339,14 @@ class Problem:
 
     @cached_property
     def _driven(self) -> list[DrivenFriction]:
-        """Friction of driven points, interface by interface (see `driven_friction`)."""
+        """Friction of driven points of all interfaces (see `driven_friction`)."""
         largest = float(np.abs(self.prescribed[1]).max(initial=0.0))
         if self.carried is not None:
             largest = max(largest, float(np.abs(self.carried).max(initial=0.0)))
         return driven_contacts(self.contacts, self.row_dofs, self.prescribed, largest)
 
     def with_driven_friction(self, forces: Array, displacement: Array) -> Array:
-        """Contact forces in which the friction of driven points is that of the law.
+        """Contact forces, with the friction of driven points from their law.
 
         At driven points prescribed displacements alone make the slip, so that no method
         finds friction there (see `solver.discrete.driven_friction`). All are scaled:
@@ -357,7 +357,7 @@ class Problem:
             return forces
         settled = forces.copy()
         for driven in self._driven:
-            settled[driven.rubbing] = driven.force(forces, displacement)
+            settled[driven.tangential] = driven.force(forces, displacement)
         return settled
 
     @cached_property
@@ -386,7 +386,7 @@ class Problem:
 
     @cached_property
     def content_of_stiffness(self) -> bytes:
-        """Digest of the parts of which the stiffness of the structure is assembled."""
+        """Digest of the data from which the stiffness of the structure is assembled."""
         operators = {
             id(part.elasticity): part.elasticity for part in self.substructures
         }
@@ -398,7 +398,7 @@ class Problem:
 
     @cached_property
     def content_of_bodies(self) -> bytes:
-        """Digest of where the degrees of freedom of each body are; b"" of rods."""
+        """Digest of the positions of the bodies' degrees of freedom; b"" of rods."""
         inside = self.inside
         if inside is None:
             return b""
@@ -440,7 +440,7 @@ class Problem:
 
 
 def is_unloaded(problem: Problem) -> bool:
-    """Check whether loads, displacements and overlaps are zero, and so the answer.
+    """Check whether loads, displacements and overlaps, and so the solution, are zero.
 
     A user's law without an incremental form may act, too.
     """

@@ -36,20 +36,20 @@ among all zeros."""
 
 
 class Eliminated(Protocol):
-    """Degrees of freedom of a stiffness that are not kept, eliminated."""
+    """Eliminated degrees of freedom of a stiffness."""
 
     @property
     def nbytes(self) -> int:
         """Memory of factor and response, B."""
 
     def condense(self, force: Array) -> Array:
-        """Forces inside, (..., n_rest, n_columns), as what is kept has to hold them.
+        """Condense forces, (..., n_rest, n_columns), onto the kept degrees of freedom.
 
         Negative, of shape (..., n_kept, n_columns).
         """
 
     def recover(self, kept: Array, force: Array | None) -> Array:
-        """Displacement inside, (n_rest, n_columns), scaled.
+        """Displacement of eliminated degrees of freedom, (n_rest, n_columns), scaled.
 
         From that of what is kept, (n_kept, n_columns), and forces inside, (n_rest,
         n_columns), or None.
@@ -57,7 +57,7 @@ class Eliminated(Protocol):
 
 
 class FewEliminated:
-    """A rest that is eliminated by its own factor.
+    """Elimination by factors of the block of eliminated degrees of freedom.
 
     Parameters
     ----------
@@ -88,11 +88,11 @@ class FewEliminated:
         return self._factor_nbytes + self.response.nbytes
 
     def condense(self, force: Array) -> Array:
-        """Forces on what is kept, negative, (..., n_kept, n_columns)."""
+        """Condensed forces with opposite sign, (..., n_kept, n_columns)."""
         return np.asarray(self.response.T @ force)
 
     def recover(self, kept: Array, force: Array | None) -> Array:
-        """Displacement inside, (n_rest, n_columns), by what is kept and by forces."""
+        """Displacement of eliminated degrees of freedom, (n_rest, n_columns)."""
         rest = -(self.response @ kept)
         if force is not None:
             rest += self._solve(force)
@@ -100,7 +100,7 @@ class FewEliminated:
 
 
 class ManyEliminated:
-    """A large sparse rest, eliminated by one factor of the whole stiffness.
+    """Elimination by factors of the whole sparse stiffness with springs.
 
     The factor's last block is what elimination has made of the stiffness by then. For
     an ordering by degree what is kept comes last, as if each of it were tied to all
@@ -143,7 +143,7 @@ class ManyEliminated:
 
     @classmethod
     def of(cls, whole: sparse.csc_array, kept: Indices) -> ManyEliminated | None:
-        """Eliminate the rest of a stiffness, (n, n), by the size of both.
+        """Eliminate all but `kept` of a stiffness, (n, n); None where that is slower.
 
         None where it is not as large as that, or where much of it comes after what is
         kept, as in a body that has many more degrees of freedom.
@@ -164,13 +164,13 @@ class ManyEliminated:
 
     @property
     def nbytes(self) -> int:
-        """Memory of factor and response, B; the response is made when it is read."""
+        """Memory of factor and response, B, including a response to be computed."""
         response = self._with_springs.itemsize * len(self._rest) * len(self._kept)
         factor = ENTRY * int(self._factor.nnz)
         return factor + response + self._with_springs.nbytes
 
     def condense(self, force: Array) -> Array:
-        """Forces on what is kept, negative, (..., n_kept, n_columns)."""
+        """Condensed forces with opposite sign, (..., n_kept, n_columns)."""
         together = force.reshape(-1, *force.shape[-2:])
         on_kept = [
             -self._with_springs @ self._sprung(of_one)[self._kept]
@@ -179,7 +179,7 @@ class ManyEliminated:
         return np.reshape(on_kept, (*force.shape[:-2], len(self._kept), -1))
 
     def recover(self, kept: Array, force: Array | None) -> Array:
-        """Displacement inside, (n_rest, n_columns), by what is kept and by forces."""
+        """Displacement of eliminated degrees of freedom, (n_rest, n_columns)."""
         further = kept
         rest = np.zeros((len(self._rest), kept.shape[1]))
         if force is not None:
@@ -193,19 +193,19 @@ class ManyEliminated:
 
     @cached_property
     def _response(self) -> Array:
-        """Displacement inside by that of each that is kept: (n_rest, n_kept)."""
+        """Matrix from kept to eliminated displacements, (n_rest, n_kept)."""
         return self._pulled_along(np.eye(len(self._kept)))
 
     def _pulled_along(self, kept: Array) -> Array:
-        """Displacement inside, (n_rest, n), by that of what is kept, (n_kept, n)."""
+        """Eliminated displacements, (n_rest, n), by kept ones, (n_kept, n)."""
         force = space_time(self._factor.shape[0], kept.shape[1])
         force[self._kept] = self._with_springs @ kept
         return np.asarray(self._factor.solve(force)[self._rest])
 
     def _sprung(self, force: Array) -> Array:
-        """Displacement of all, (n, n_columns), by forces inside, (n_rest, n_columns).
+        """Displacement, (n, n_columns), with springs, by forces (n_rest, n_columns).
 
-        What is kept is on its springs.
+        The kept degrees of freedom are on springs.
         """
         # A load mostly is the same at all instants, but for its size.
         patterns, courses = separated(force)
@@ -260,7 +260,7 @@ class SchurComplement:
         self.stiffness *= 0.5
 
     def _condensed_by_response(self, stiffness: sparse.csc_array | Array) -> Array:
-        """Condense by the response of the rest, (n_kept, n_kept), from (n, n)."""
+        """Condense by a response in blocks: (n_kept, n_kept), from (n, n)."""
         positions = self._positions
         condensed = _dense(stiffness[positions][:, positions])
         if not len(self._rest):
@@ -276,7 +276,7 @@ class SchurComplement:
         return condensed
 
     def with_signs(self, signs: Array) -> SchurComplement:
-        """Make the same stiffness with some directions turned round.
+        """Make the same stiffness with some degrees of freedom reversed.
 
         `signs` are -1 for these and 1 for others, (n_kept,). All but the condensed
         stiffness is shared. Not for a stiffness that was condensed before.
@@ -291,7 +291,7 @@ class SchurComplement:
 
     @property
     def nbytes(self) -> int:
-        """Memory of matrices and factors, also of the condensation before, B."""
+        """Memory of matrices and factors, also of an earlier condensation, B."""
         nbytes = self.stiffness.nbytes
         if self._eliminated is not None:
             nbytes += self._eliminated.nbytes
@@ -333,14 +333,14 @@ class SchurComplement:
 
 
 def _others(count: int, some: Indices) -> Indices:
-    """All of a count of numbers but some, ascending, (count - n,)."""
+    """Integers from 0 to `count` - 1 except `some`, (n,), ascending: (count - n,)."""
     is_other = np.ones(count, dtype=bool)
     is_other[some] = False
     return np.flatnonzero(is_other)
 
 
 def _tied(whole: sparse.csc_array, kept: Indices, spring: float) -> sparse.csc_array:
-    """Stiffness, (n, n), with a spring beside each that is kept, (n_kept,).
+    """Stiffness, (n, n), with a spring at each kept degree of freedom, (n_kept,).
 
     All pairs of these are entries, if of zero.
     """

@@ -39,7 +39,7 @@ def on_side(side: str, shares: ArrayLike) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Act:
-    """A load, or a prescribed displacement, as drawings show it.
+    """An arrow of a load, or of a prescribed displacement, for drawings.
 
     Attributes
     ----------
@@ -69,14 +69,14 @@ class Act:
 
     @property
     def away(self) -> Direction:
-        """Direction out of the body, a unit vector: there is room for an arrow."""
+        """Unit vector out of the body, towards free space for an arrow."""
         if self.outward is not None:
             return self.outward
         return OUTWARD.get(self.side, OUTWARD["right"])
 
     @property
     def side(self) -> str:
-        """Side of all bodies that `where` names, or to which the outward vector points.
+        """Side of all bodies: as `where` names, or to which the outward vector points.
 
         "body" for a load on the whole body.
         """
@@ -120,7 +120,7 @@ class Hold:
 
 @dataclass(frozen=True, eq=False)
 class Footing:
-    """Line of points at which bodies of any shape are supported or held.
+    """Line of points along which bodies of any shape are supported or held.
 
     Attributes
     ----------
@@ -191,7 +191,7 @@ Axes = tuple[tuple[str, str], tuple[str, str]]
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """A force over the displacement that it works on; its area is dissipated energy.
+    """A force over the displacement of its point; the area is dissipated energy.
 
     Of parallel wires, each pulled by the force, the area is one's share of it. Or a
     force, or a displacement, over the quantity that drives it: then the loop shows how
@@ -222,7 +222,7 @@ class Loop:
         return self.displacement.of(fields), self.force(fields)
 
     def finds_force(self, problem: Problem) -> bool:
-        """Check whether the displacement is prescribed and the force unknown."""
+        """Check whether the displacement is prescribed, and the force a result."""
         return bool(np.isin(self.displacement.dofs, problem.prescribed[0]).all())
 
 

@@ -73,7 +73,7 @@ class Elasticity:
 
     @property
     def nbytes(self) -> int:
-        """Memory of the operator, B, without the places of sparse entries."""
+        """Memory of the operator, B, without the indices of sparse entries."""
         fields = (self.stiffness, self.trace, self.direction)
         return sum(field.size * field.dtype.itemsize for field in fields)
 
@@ -101,7 +101,7 @@ class Elasticity:
 
     @cached_property
     def boundary(self) -> tuple[Indices, Indices, sparse.csr_array | Array]:
-        """Degrees of freedom at the boundary, and their rows of the stiffness.
+        """Degrees of freedom at the boundary, and the rows of the stiffness there.
 
         The degrees of freedom, (n,), ascend. Then the index in them of every boundary
         row, (n_boundary,), and the stiffness, (n, n_dofs), scaled.
@@ -170,7 +170,7 @@ class Substructure:
         rows: Sequence[Indices],
         body_forces: Sequence[Array | None],
     ) -> list[Substructure]:
-        """Substructures of one operator, of which the first is checked.
+        """Substructures that share an operator; only the first is checked.
 
         Of each there are its `dofs`, (n_dofs,), its `rows`, (n_boundary,), and the
         forces inside, (n_dofs, n_instants), scaled, or None; `check_forces` is for
@@ -197,7 +197,7 @@ def check_forces(body_forces: Array) -> None:
 
 
 def tributary(elements: int) -> Array:
-    """Length of each node of a row of elements, over that of an element, (n_nodes,)."""
+    """Tributary length of each node of a row of equal elements, over an element's."""
     shares = np.ones(elements + 1)
     shares[[0, -1]] = 0.5
     return shares

@@ -1,4 +1,4 @@
-"""A view on a page, fed by the iterations: `panel serve page.py --show` opens it."""
+"""A view on a page, updated by iterations: `panel serve page.py --show` opens it."""
 
 import numpy as np
 import panel as pn
@@ -31,7 +31,7 @@ BAR = Rods(
 
 
 class LoopView:
-    """Force over the end's displacement: of an iterate, and the closed form, dashed."""
+    """Force over the end's displacement of an iterate; dashed, of the closed form."""
 
     def __init__(self) -> None:
         self.source = ColumnDataSource({"x": 0.0 * TIMES, "y": FORCE})
@@ -52,7 +52,7 @@ run = iterations(
 
 
 def step() -> None:
-    """Go on by an iteration."""
+    """Do one iteration."""
     view.update(next(run))
 
 

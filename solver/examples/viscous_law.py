@@ -25,7 +25,7 @@ class Damper(Interface):
     remembers = True  # the instants depend on each other
 
     def rule(self, k, n_instants):
-        """Make the local stage: from z of all rows the displacement of its own."""
+        """Make the local stage: displacement of the damper's rows from z."""
         stiffness = k[self.rows]
         damping = self.per_step
 

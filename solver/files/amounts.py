@@ -1,4 +1,4 @@
-"""Amounts as people read them: numbers in a unit of a size that suits them."""
+"""Amounts for readers: numbers in a unit of suitable size."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Unit:
         return f"{number(value / self.factor, digits)}{gap}{self.name}".strip()
 
     def titled(self, title: str) -> str:
-        """A title with the unit behind it."""
+        """A title followed by the unit."""
         if self.name:
             return f"{title}, {self.name}"
         return title
@@ -45,7 +45,7 @@ def sizes_of(unit: str) -> dict[str, float]:
 
 
 def unit_for(size: float, unit: str) -> Unit:
-    """The unit in which values up to a size in SI are read."""
+    """The unit of suitable size for values up to a size in SI."""
     if math.isfinite(size) and size > 0.0:
         # As it is read: 0.9999 is 1.
         size = float(f"{size:.3g}") * (1.0 + 1e-9)
@@ -61,7 +61,7 @@ def unit_for(size: float, unit: str) -> Unit:
 
 
 def number(value: float, digits: int = 3) -> str:
-    """A number with a printed minus, and with a power of ten where it needs one."""
+    """Text of a number, with a minus sign, and a power of ten where needed."""
     near = float(f"{value:.{digits}g}")
     if near != 0.0 and math.isfinite(near) and not 1e-3 <= abs(near) < 1e6:
         digit, exponent = f"{value:.{digits - 1}e}".split("e")
@@ -72,5 +72,5 @@ def number(value: float, digits: int = 3) -> str:
 
 
 def amount(value: float, unit: str) -> str:
-    """A value in SI in the unit in which it is read."""
+    """Text of a value in SI in a unit of suitable size."""
     return unit_for(abs(value), unit)(value, 4)

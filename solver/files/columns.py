@@ -1,4 +1,4 @@
-"""Heads of tables: quantities that a name may mean, and the unit behind the name.
+"""Heads of tables: quantities that a name may mean, and the unit after the name.
 
 A single letter behind a name is a unit only as it is written: `force N`, but not
 `channel n`.
@@ -88,7 +88,7 @@ _IN_OR_SLASH = re.compile(r"(.*?)(?:\s+in\s+|\s*/\s*)(.+)")
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column of a table: its number from 0, its name, unit, and the line of these."""
+    """A column of a table: index, name, unit, and the line of the head."""
 
     number: int
     line: int = 0
@@ -107,7 +107,7 @@ class TableColumn:
 
     @cached_property
     def quantities(self) -> tuple[frozenset[str], bool]:
-        """Quantities that the name may mean, and whether all of it means them."""
+        """Quantities that the name may mean, and whether the whole name means them."""
         name = self.key.replace("_", " ").rstrip(" .:")
         # A head may be `load cell`, `Axial Force 2` or `Prüfzeit`: the whole name, its
         # last word without a number, and its ending are tried.
@@ -122,7 +122,7 @@ class TableColumn:
         return frozenset(), False
 
     def size(self, unit: str, refuse: Refuse) -> float:
-        """Size of the column's unit in another; refuse a unit of another dimension."""
+        """Factor from the column's unit to another; refuse other dimensions."""
         if not self.unit:
             return 1.0
         size = size_in(self.unit, unit)
@@ -146,7 +146,7 @@ class TableColumn:
         return replace(self, line=line, unit=unit)
 
     def message(self, default: str, unit: str) -> str:
-        """Describe the column as it was understood, with a default name and unit."""
+        """Text of the column as it was understood, with a default name and unit."""
         name = self.name or default
         if self.unit.strip("-1"):
             return f"{name} in {self.unit}"
@@ -159,7 +159,7 @@ class TableColumn:
 
 @cache
 def _meant_by() -> dict[str, frozenset[str]]:
-    """Quantities that each word of `WORDS` may mean."""
+    """Quantities that each word of `WORDS` may mean, by word."""
     meant: dict[str, frozenset[str]] = {}
     for kind, words in WORDS.items():
         for word in [kind, *words.split()]:
@@ -190,7 +190,7 @@ def _is_unit_behind(word: str) -> bool:
 
 
 def quantities_of(title: str, units: str) -> Collection[str]:
-    """Quantities that a title names, or else those of some units, such as `Pa or m`."""
+    """Quantities that a title names, else those of some units, such as `Pa or m`."""
     named = TableColumn(0, name=title).quantities[0]
     if named:
         return named

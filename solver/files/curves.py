@@ -1,4 +1,4 @@
-"""Tables for settings that are curves, with messages on how they were understood."""
+"""Tables for settings that are curves, and messages on how tables were understood."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from solver.settings.values import SettingError, allowed
 
 
 def _names_of_curves() -> set[str]:
-    """Names of the curves of all scenes that are no common words."""
+    """Names of the curves of all scenes, without common words."""
     names = set()
     for kind in CATALOGUE.values():
         for name, definition in kind.definitions().items():
@@ -59,7 +59,7 @@ def curve_of(
 def columns_for(
     table: Table, definition: CurveParameter, name: str, units: Sequence[str]
 ) -> Sequence[TableColumn]:
-    """Columns of a curve in a table: by the head, or in order if that names none."""
+    """Columns of a curve in a table: by the head, else in order."""
     columns = table.columns
     names_quantities = any(column.is_known for column in columns)
     names_settings = any(column.key in _SETTINGS for column in columns)
@@ -77,7 +77,7 @@ def columns_for(
 def path_doubts(
     table: Table, settings: Settings, name: str, points: Sequence[Sequence[float]]
 ) -> list[str]:
-    """Words on columns without a unit, some thousand times off the scene.
+    """Messages on columns without a unit that seem thousand times too large or small.
 
     Positions are compared with the length of the scene, values with the path by
     default, where it is of the same quantity. Times are not doubted, as runs last as
@@ -139,7 +139,7 @@ def _chosen(
 def read_tables(
     kind: type[Settings], values: dict[str, object], folder: Path
 ) -> dict[str, Table]:
-    """Read the CSV files that curves name; points replace the names in the values.
+    """Read the CSV files named by curves; points replace the names in the values.
 
     Only fronts whose user owns the machine call this: elsewhere no file may be read.
     """

@@ -1,4 +1,4 @@
-"""Files: read up to a largest size, and written complete or not at all."""
+"""Files: read up to a largest size, written completely or not at all."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TOO_LARGE = f"it has more than {LARGEST // 1_000_000} MB"
 
 
 def read_bytes(path: Path, refuse: Refuse) -> bytes:
-    """Bytes of a file, of which no more than `LARGEST` are read.
+    """Read the bytes of a file, at most `LARGEST`.
 
     A path that cannot be read, is too large, or is no file is refused with the reason.
     A pipe, which may have no other end, is not waited for.
@@ -44,13 +44,13 @@ def read_bytes(path: Path, refuse: Refuse) -> bytes:
 
 
 def _open_at_once(path: str, flags: int) -> int:
-    """Open a file, without waiting for the other end of a pipe where a system can."""
+    """Open a file without waiting for the other end of a pipe, if the system can."""
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 @contextmanager
 def whole_file(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
-    """Open a file to write, which appears under its name once it is complete.
+    """Open a file to write; it gets its name when it is complete.
 
     Until then it has another name in the same folder; it is removed if anything fails.
 
@@ -78,28 +78,28 @@ def whole_file(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
 
 
 def why(problem: OSError | ValueError) -> str:
-    """Reason, in a few words, for which a file cannot be read or written."""
+    """Short reason why a file cannot be read or written."""
     if isinstance(problem, OSError) and problem.strerror:
         return problem.strerror
     return type(problem).__name__
 
 
 def write(path: Path, content: str | bytes) -> None:
-    """Write a file, complete or not at all, as `whole_file`."""
+    """Write a file completely or not at all, as `whole_file`."""
     mode = "w" if isinstance(content, str) else "wb"
     with whole_file(path, mode) as file:
         file.write(content)
 
 
 def check_place(path: Path) -> None:
-    """Raise the error of `whole_file` at once, before long work."""
+    """Raise the error of `whole_file` early, before long work."""
     _, part = _target_and_part(path)
     part.touch(exist_ok=False)
     part.unlink()
 
 
 def _target_and_part(path: Path) -> tuple[Path, Path]:
-    """Path of a file, with links followed, and its path until it is complete."""
+    """Path of a file with links resolved, and its temporary path until completion."""
     target = Path(os.path.realpath(path))
     if target.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))

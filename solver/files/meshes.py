@@ -1,4 +1,4 @@
-"""Files of meshes for settings: their texts take the place of the names of files."""
+"""Files of meshes for settings: their texts replace the names of the files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ and are read without other files."""
 
 
 def text_of_mesh(data: bytes, source: str, name: str = "mesh") -> str:
-    """Text of the mesh in a file, which the setting of that name takes.
+    """Text of the mesh in a file, as value of the setting `name`.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def text_of_mesh(data: bytes, source: str, name: str = "mesh") -> str:
 
 
 def read_meshes(kind: type[Settings], values: dict[str, Any], folder: Path) -> None:
-    """Read the files that settings name; texts replace the names in the values.
+    """Read the files named by settings; texts replace the names in the values.
 
     Only fronts whose user owns the machine call this: elsewhere no file may be read.
     """

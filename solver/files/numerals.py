@@ -53,7 +53,7 @@ SIGNS = ".,"
 
 
 def _pattern(decimal: str, thousands: str) -> re.Pattern[str]:
-    """Pattern of numerals under a decimal sign, with another sign between thousands."""
+    """Pattern of numbers with a decimal sign, and another sign between thousands."""
     point = re.escape(decimal)
     digits = rf"(?:\d+{point}?\d*|{point}\d+)"
     # Fortran leaves the letter out before three digits; without a point that is a part
@@ -87,7 +87,7 @@ def is_gap(cell: str) -> bool:
 
 
 def decimal_signs(cell: str) -> str:
-    """Decimal signs under which a cell is a number: both (`1,234`), one, or none."""
+    """Decimal signs with which a cell is a number: both (`1,234`), one, or none."""
     if _PLAIN.fullmatch(cell):
         # Almost all cells are plain, and spare two larger patterns.
         if not ("." in cell or "," in cell) or _GROUP.fullmatch(cell):
@@ -98,12 +98,12 @@ def decimal_signs(cell: str) -> str:
 
 
 def is_numeral(cell: str) -> bool:
-    """Check whether a cell is a number under either decimal sign."""
+    """Check whether a cell is a number with either decimal sign."""
     return _PLAIN.fullmatch(cell) is not None or bool(decimal_signs(cell))
 
 
 def number(cell: str, decimal: str) -> float:
-    """Number of a cell under a decimal sign; NaN of a gap or a word."""
+    """Value of a cell with a decimal sign; NaN for a gap or a word."""
     thousands = "." if decimal == "," else ","
     # The quick way of almost all cells.
     if thousands not in cell and _PLAIN.fullmatch(cell):
@@ -119,7 +119,7 @@ def number(cell: str, decimal: str) -> float:
 
 
 def leading_number(text: str) -> tuple[float, str]:
-    """Number at the start of a typed text, and what stands behind it; NaN without one.
+    """Number at the start of a typed text, or NaN, and the text after the number.
 
     A lone sign before three digits is a decimal one, as in `1.234` and `1,234`.
     """

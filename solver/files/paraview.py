@@ -51,7 +51,7 @@ class _Cells(NamedTuple):
 
 
 def check_plane(inside: Inside | None, path: Path) -> Inside:
-    """Return the inside of plane bodies; refuse structures of rods."""
+    """Return the interior of plane bodies; refuse structures of rods."""
     if inside is None:
         raise SettingError(
             "--out",
@@ -63,7 +63,7 @@ def check_plane(inside: Inside | None, path: Path) -> Inside:
 
 
 def write_series(path: Path, iterate: Iterate) -> None:
-    """Write a series of files; the one that lists them comes last, complete.
+    """Write a series of files; last, completely, the file that lists them.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def contacts_of_series(path: Path, refuse: Refuse, interface: str = "") -> str:
 
 
 class _Bodies:
-    """The bodies at any instant: displacement of nodes, stress in elements."""
+    """Bodies at any instant: displacement of nodes, stress in elements."""
 
     def __init__(self, inside: Inside, displacement: Array) -> None:
         self._inside = inside
@@ -233,7 +233,7 @@ class _Contacts:
 
 
 def _cells_of(elements: Indices) -> list[_Cells]:
-    """Cells of each kind, of elements of which some have a corner twice, (n, 4)."""
+    """Cells of each kind, from elements (n, 4), some with a repeated corner."""
     is_new = np.ones(elements.shape, dtype=bool)
     is_new[:, 1:] = elements[:, 1:] != elements[:, :-1]
     counts = is_new.sum(axis=1)

@@ -63,7 +63,7 @@ def settings_from_toml(text: str) -> Settings:
 
 
 def read_settings(data: bytes | str, source: str) -> tuple[Settings, Mapping[str, str]]:
-    """Settings of a saved file in TOML, and messages on settings of an older meaning.
+    """Settings of a saved file in TOML, and messages on settings with an older meaning.
 
     The messages stand under the names of the settings. The file has a scene's name
     under `scene`, and settings by name; its curves name no other files. A refusal of
@@ -77,7 +77,7 @@ def read_settings(data: bytes | str, source: str) -> tuple[Settings, Mapping[str
 
 
 def format_in(values: dict[str, Any]) -> int:
-    """Take the number of the format out of a settings file's values; 1 if missing."""
+    """Remove the number of the format from the values of a file; 1 if missing."""
     number = values.pop("format", 1)
     require(
         isinstance(number, int) and 1 <= number <= FORMAT,
@@ -92,7 +92,7 @@ def format_in(values: dict[str, Any]) -> int:
 def meant_before(
     settings: Settings, given: Collection[str], number: int
 ) -> Mapping[str, str]:
-    """Messages on given settings of another meaning in a format, by their names."""
+    """Messages on given settings that had another meaning in a format, by name."""
     if number >= FORMAT:
         return {}
     changed = settings.changed_meanings()
@@ -100,7 +100,7 @@ def meant_before(
 
 
 def dump(settings: Settings) -> str:
-    """Text of a TOML file of settings, which every front reads."""
+    """Text of a TOML file of settings, for page, command line and library."""
     lines = [
         f"{name} = {json.dumps(value)}" for name, value in settings.values().items()
     ]
@@ -148,7 +148,7 @@ def settings_from_command(
 
 
 def _changes_in(assignments: Sequence[str], kind: type[Settings]) -> dict[str, object]:
-    """Values of `NAME=VALUE` texts by name; that of an unknown name is a text."""
+    """Values of `NAME=VALUE` texts by name; values of unknown names stay texts."""
     changes: dict[str, object] = {}
     for assignment in assignments:
         name, equals, text = assignment.partition("=")
@@ -164,13 +164,13 @@ def _changes_in(assignments: Sequence[str], kind: type[Settings]) -> dict[str, o
 
 
 def read_toml(path: Path, kind: str) -> dict[str, Any]:
-    """Content of a file in TOML; refusals name the file by its `kind`."""
+    """Read a file in TOML; refusals name the file by its `kind`."""
     refuse = partial(SettingError, kind, str(path), "a file that can be read")
     return _parsed(read_bytes(path, refuse), kind, str(path))
 
 
 def _parsed(data: bytes | str, name: str, shown: str) -> dict[str, Any]:
-    """Content of a text in TOML; refusals have its name, and show `shown`."""
+    """Parse a text in TOML; refusals have the name `name`, and show `shown`."""
     if len(data) > LARGEST:
         raise SettingError(name, shown, "TOML", TOO_LARGE)
     refuse = partial(SettingError, name, shown, "TOML")
@@ -227,7 +227,7 @@ def fields_in(kind: Any, values: Mapping[str, Any], **others: Any) -> dict[str, 
 
 
 def _texts_in(values: Sequence[object], name: str) -> tuple[str, ...]:
-    """Texts of a list under a key; refuse an empty list, and other values."""
+    """Texts in a list under a key; refuse an empty list and other values."""
     texts = [value for value in values if isinstance(value, str)]
     require(
         len(values) > 0 and len(texts) == len(values) and all(texts),
@@ -240,7 +240,7 @@ def _texts_in(values: Sequence[object], name: str) -> tuple[str, ...]:
 
 
 def require(is_met: bool, name: str, value: object, allowed: str, remedy: str) -> None:
-    """Refuse a value that does not meet what is required of it."""
+    """Refuse a value unless a requirement is met."""
     if not is_met:
         raise SettingError(name, value, allowed, remedy)
 
@@ -255,7 +255,7 @@ def check_controls(names: Sequence[str], settings: Settings) -> None:
 
 @contextlib.contextmanager
 def placed(place: str) -> Iterator[None]:
-    """Put a file, or a place in it, before the name of what is refused in it."""
+    """Context that puts a file, or a place in a file, before names in refusals."""
     try:
         yield
     except SettingError as refusal:
@@ -355,7 +355,7 @@ def _history_arrays(solution: Solution) -> dict[str, Any]:
 
 
 def interface_arrays(iterate: Iterate) -> dict[str, Any]:
-    """Arrays `interface/NAME/...` of all interfaces but a single one of known bound.
+    """Arrays `interface/NAME/...` of all interfaces, except a single rod's.
 
     `determinate`, (n_points,), is false at points whose force is an arbitrary share of
     the total that a support or a ring of bodies carries.

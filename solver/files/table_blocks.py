@@ -1,4 +1,4 @@
-"""The table among the lines of a file: its rows, its head, and its cells."""
+"""The table in the lines of a file: rows, head and cells."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FARTHEST = 100
 
 @dataclass(eq=False)
 class Block:
-    """Rows of one table, without another head among them, and the lines around them.
+    """Rows of one table, and the lines above and between them.
 
     Attributes
     ----------
@@ -39,17 +39,17 @@ class Block:
 
     @property
     def size(self) -> int:
-        """Number of rows that have two numbers or more."""
+        """Number of rows with at least two numbers."""
         return sum(row.n_numbers > 1 for row in self.rows)
 
     @cached_property
     def width(self) -> int:
-        """Number of columns of most rows, without words at their end."""
+        """Most frequent number of columns, without words at the end of rows."""
         return Counter(row.width for row in self.rows).most_common(1)[0][0]
 
     @cached_property
     def is_known(self) -> bool:
-        """Check whether a line above may be a head that names a quantity."""
+        """Check whether a line above the rows names a quantity."""
         near = self.above[-FARTHEST:]
         return any(len(line.cells) > 1 and _is_known(line.cells) for line in near)
 
@@ -62,7 +62,7 @@ class Block:
 def block_of(
     lines: Sequence[Line], separator: str, refuse: Refuse
 ) -> tuple[Block, list[str]]:
-    """Table that has most rows, and words on others; refuse two of the same size."""
+    """The table with most rows, and messages on others; refuse two of equal size."""
     blocks = list(_blocks(lines, separator))
     if not blocks:
         raise refuse("it has no points: give lines of numbers")
@@ -122,7 +122,7 @@ def _blocks(lines: Sequence[Line], separator: str) -> Iterator[Block]:
 def _heads_among(
     between: Sequence[Line], row: Line, block: Block | None, separator: str
 ) -> list[Line]:
-    """Lines since the last row of a table that may be the head of a row below them."""
+    """Lines after the last row of a table that may be the head of a next table."""
     heads = [
         other for other in between[-FARTHEST:] if _is_head_of(other, row, separator)
     ]
@@ -140,7 +140,7 @@ def _is_comment_or_known(head: Line) -> bool:
 
 
 def _is_head_of(line: Line, row: Line, separator: str) -> bool:
-    """Check whether a line of words may be the head of rows: a name for each column.
+    """Check whether a line of words may be the head: with a name for each column.
 
     Comments, and lines divided by blanks, may be prose: of a head two names are known.
     """
@@ -156,7 +156,7 @@ def _is_head_of(line: Line, row: Line, separator: str) -> bool:
 
 
 def _is_known(words: Sequence[str]) -> bool:
-    """Check whether a name of a line is that of a quantity, or has a unit."""
+    """Check whether a word of a line names a quantity, or has a unit."""
     return any(column_of(0, 0, word).is_known for word in words)
 
 
@@ -183,7 +183,7 @@ def _is_next(line: Line, block: Block | None, separator: str) -> bool:
 
 
 def _broken_rows(between: Sequence[Line], row: Line) -> list[Line]:
-    """First row of a table as a list, if a word stands there in place of a number.
+    """List of the first row of a table, if it has a word in place of a number.
 
     It is the line right above the first row of numbers, and as wide as that; else the
     list is empty.
@@ -199,7 +199,7 @@ def _broken_rows(between: Sequence[Line], row: Line) -> list[Line]:
 
 
 def _leave_summary(block: Block) -> None:
-    """Pass over first rows of another width than most rows, if no head is above."""
+    """Drop first rows with an unusual number of columns, unless a head is above."""
     if block.above and block.above[-1].is_text:
         return
     # Without a head numbers above the data, as a count of rows, look like rows.
@@ -245,7 +245,7 @@ def headed(block: Block, separator: str, refuse: Refuse) -> list[TableColumn]:
 
 
 def _texts_of_head(block: Block, separator: str) -> list[tuple[Line, list[str]]]:
-    """Lines above the rows that may be a head or units, each with its words."""
+    """Lines above the rows that may be a head or units, and the words of each."""
     near = [line for line in block.above if line.is_text][-FARTHEST:]
     texts = []
     for line in near:
@@ -261,7 +261,7 @@ def _has_numbers(words: Sequence[str]) -> bool:
 
 
 def _fits(named: Sequence[TableColumn], block: Block, separator: str) -> bool:
-    """Check whether there is a column for each name.
+    """Check whether the table has a column for each name.
 
     The last columns may be empty, or have words alone.
     """
@@ -282,7 +282,7 @@ def _check_nearest(
     separator: str,
     refuse: Refuse,
 ) -> None:
-    """Refuse a head right above the rows that has too few names, or too many."""
+    """Refuse a head directly above the rows with too few or too many names."""
     if not texts:
         return
     line, words = texts[-1]
@@ -296,7 +296,7 @@ def _check_nearest(
 
 
 def _names_in(line: Line, width: int, separator: str) -> list[str]:
-    """Names in a line: its cells, or a division that has a name for each column.
+    """Names in a line: its cells, or the text divided into a name for each column.
 
     In comments, and in lines divided by blanks, a name may have blanks within, or one
     in front of its bracket, and commas may stand between names. A comment may follow.
@@ -322,7 +322,7 @@ def _names_in(line: Line, width: int, separator: str) -> list[str]:
 
 
 def fitted(block: Block, width: int, separator: str, refuse: Refuse) -> list[list[str]]:
-    """Cells of rows, as many as there are columns."""
+    """Cells of all rows, padded or cut to the number of columns."""
     cells = []
     for row in block.rows:
         # Where blanks divide columns nothing says which cell of a short row lacks.
@@ -334,7 +334,7 @@ def fitted(block: Block, width: int, separator: str, refuse: Refuse) -> list[lis
 
 
 def _cells_of(row: Line, width: int, refuse: Refuse) -> list[str]:
-    """Cells of a row, as many as there are columns, without words behind the last."""
+    """Cells of a row, padded or cut to the number of columns."""
     cells = list(row.cells)
     lacking = width - len(cells)
     if lacking >= 0:

@@ -32,7 +32,7 @@ _RULE = re.compile(r"[\s;,|+]*([-=_*~.])\1{2,}[-=_*~.\s;,|+]*")
 
 
 class Line(NamedTuple):
-    """A line of a file: its number, from 1, its text, and its cells.
+    """A line of a file: number (from 1), text and cells.
 
     A cell is a number, a gap, or else a word.
     """
@@ -81,7 +81,7 @@ class Line(NamedTuple):
 def line_of(
     number: int, text: str, cells: Sequence[str], *, is_comment: bool = False
 ) -> Line:
-    """Make a line of cells, and judge which of them are numbers and which are words."""
+    """Make a line from cells, and classify cells as numbers or words."""
     are_numbers = tuple(map(is_numeral, cells))
     are_words = (False,) * len(cells)
     # Almost all lines have numbers alone: these need no second look.
@@ -96,7 +96,7 @@ def line_of(
 def text_of(
     data: bytes | str, refuse: Refuse, remedy: str = "save the table as CSV"
 ) -> str:
-    """Text of a file; refuse other content, and say what to do."""
+    """Decode a file as text; refuse other content, with a remedy."""
     if isinstance(data, str):
         text = data
     else:
@@ -130,12 +130,12 @@ def lines_of_text(data: bytes | str, refuse: Refuse) -> tuple[str, list[Line]]:
 
 
 def _is_empty(line: Line) -> bool:
-    """Check whether a line has no cells, or is a rule between others."""
+    """Check whether a line has no cells, or is a rule of dashes."""
     return not line.cells or bool(_RULE.fullmatch(line.text))
 
 
 def _separator_of(texts: Sequence[str]) -> str:
-    """Separator by which most cells of most lines are numbers, and widths are alike."""
+    """Separator that gives most cells with numbers, and rows of equal width."""
     # Heads may be long and of another kind, so lines from all of the file count.
     sample = [*texts[:: max(1, len(texts) // SAMPLE)], *texts[-LAST:]]
 
@@ -156,7 +156,7 @@ def _separator_of(texts: Sequence[str]) -> str:
 
 
 def _has_two(line: Line) -> bool:
-    """Check whether a line has two numbers, or a number and a gap that is written."""
+    """Check whether a line has two numbers, or a number and a written gap."""
     filled = filter(None, line.cells)
     gaps = [cell for cell in filled if is_gap(cell)]
     has_number = line.n_numbers > 0
@@ -164,7 +164,7 @@ def _has_two(line: Line) -> bool:
 
 
 def _line(number: int, text: str, separator: str) -> Line:
-    """Make a line; of a comment the mark is dropped, as its words may be a head."""
+    """Make a line; comments lose their mark, as they may contain the head."""
     plain = text.strip(" \f")
     line = line_of(number, plain, split_cells(plain, separator))
     if line.cells and _is_comment(plain, line.cells[0], separator):
@@ -192,7 +192,7 @@ def _is_comment(text: str, first: str, separator: str) -> bool:
 
 
 def _without_comment(text: str, separator: str) -> list[str]:
-    """Cells before a comment behind two numbers or more; empty without one."""
+    """Cells before a comment at the end of a row of numbers; empty without one."""
     for mark in _MARK.finditer(text):
         before = text[mark.start() - 1 : mark.start()]
         stands_apart = before.isspace() or before == separator
@@ -208,7 +208,7 @@ def _without_comment(text: str, separator: str) -> list[str]:
 
 
 def split_cells(text: str, separator: str) -> list[str]:
-    """Cells of a text up to the last filled one."""
+    """Split a text into cells, without empty cells at the end."""
     if separator == BLANKS:
         cells = re.split(r" {2,}|\t", text.strip())
     elif separator == " ":
@@ -222,7 +222,7 @@ def split_cells(text: str, separator: str) -> list[str]:
 
 
 def up_to_last_filled(cells: list[str]) -> list[str]:
-    """Cells up to the last one that is not empty."""
+    """Cells without empty ones at the end."""
     count = len(cells)
     while count and not cells[count - 1]:
         count -= 1
@@ -230,5 +230,5 @@ def up_to_last_filled(cells: list[str]) -> list[str]:
 
 
 def is_blank(separator: str) -> bool:
-    """Check whether columns are divided by blanks."""
+    """Check whether blanks separate the columns."""
     return separator in (" ", BLANKS)

@@ -1,4 +1,4 @@
-"""Tables of spreadsheets, measuring machines and programs: from bytes to named columns.
+"""Tables of spreadsheets, measuring machines, programs: from bytes to named columns.
 
 A file is read once, into a `Table`, from which paths, loops and results are taken.
 
@@ -104,7 +104,7 @@ class Reading:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """A table of named columns, as it was read.
+    """A table of named columns, as read from a file.
 
     Attributes
     ----------
@@ -134,11 +134,11 @@ class Table:
     refuse: Refuse
 
     def given_as(self, name: str, allowed: str) -> Table:
-        """Make the table with refusals that have the name of a setting or an option."""
+        """Copy of the table whose refusals have the name of a setting or an option."""
         return replace(self, refuse=partial(SettingError, name, self.source, allowed))
 
     def with_columns(self, columns: Sequence[TableColumn]) -> Table:
-        """Make the table with other columns; one more has the rows' numbers from 0."""
+        """Copy of the table with other columns; an extra one is the row's index."""
         named = replace(self, columns=tuple(columns))
         if len(columns) == len(self.columns):
             return named
@@ -153,7 +153,7 @@ class Table:
         unit: str = "",
         key: str = "",
     ) -> TableColumn | None:
-        """Column of a quantity, by the rules above; refuse equally likely ones.
+        """Find the column of a quantity by the rules above; refuse equally likely ones.
 
         Parameters
         ----------
@@ -216,7 +216,7 @@ class Table:
         key: str = "",
         remedy: str = "add that column",
     ) -> TableColumn:
-        """Column of a quantity, as `find`; refuse a table without a likely one."""
+        """Find the column of a quantity, as `find`; refuse a table without one."""
         column = self.find(columns, kinds, unit, key)
         if column is None:
             others = {STANDS_IN[kind] for kind in kinds if kind in STANDS_IN}
@@ -273,7 +273,7 @@ class Table:
         units: Sequence[str],
         numbers: Array,
     ) -> str:
-        """Words on columns, the number of points, and the range of the last column.
+        """Message on columns, number of points, and range of the last column.
 
         Numbers have the units of the columns, shape (n_columns, n_rows).
         """
@@ -320,7 +320,7 @@ class Table:
 
 
 def _named(lines: Sequence[int] | Indices) -> str:
-    """Words on some lines, the first few by number, as `lines 3, 8, 9`."""
+    """Text of some lines, the first few by number, as `lines 3, 8, 9`."""
     if len(lines) == 1:
         return f"line {lines[0]}"
     numbers = ", ".join(str(line) for line in lines[:MOST_SAID])
@@ -373,7 +373,7 @@ def _numbers_of(cells: list[list[str]], decimal: str) -> Array:
 
 
 def _interruptions(block: Block) -> list[str]:
-    """Words on lines between rows."""
+    """Messages on ignored lines between rows."""
     remarks = []
     if block.repeats == 1:
         remarks.append("its head comes again once")
@@ -387,7 +387,7 @@ def _interruptions(block: Block) -> list[str]:
 def _notation(
     rows: Sequence[Line], separator: str, refuse: Refuse
 ) -> tuple[str, list[str]]:
-    """Decimal sign of a table, and words on signs between thousands, as above."""
+    """Decimal sign of a table, and messages on signs between thousands, as above."""
     # Most tables have points alone: then no cell is matched a second time.
     if not any(map(_has_doubtful_sign, rows)):
         return ".", []
@@ -424,7 +424,7 @@ CellsBySign = dict[str, list[tuple[int, str]]]
 
 
 def _cells_by_sign(rows: Sequence[Line]) -> tuple[CellsBySign, CellsBySign]:
-    """Numbers under one decimal sign alone, and under both, by their sign."""
+    """Cells that are numbers with only one decimal sign, by sign, and with both."""
     sure: CellsBySign = {sign: [] for sign in SIGNS}
     unsure: CellsBySign = {sign: [] for sign in SIGNS}
     for row in rows:
@@ -440,7 +440,7 @@ def _cells_by_sign(rows: Sequence[Line]) -> tuple[CellsBySign, CellsBySign]:
 
 
 def _check_alike(sure: CellsBySign, refuse: Refuse) -> None:
-    """Refuse decimal points and commas in one table, with the line of the rarer."""
+    """Refuse decimal points and commas in one table; name a line of the rarer one."""
     if not sure["."] or not sure[","]:
         return
     # Likely the rarer one is the slip, so its line is named.

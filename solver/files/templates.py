@@ -1,4 +1,4 @@
-"""HTML from templates, in which nothing that is filled in becomes markup."""
+"""HTML from templates; all values are escaped."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ _WITH_PREFIX: dict[str, tuple[int, Dimensions]] = {
 
 
 def _prefixed() -> dict[str, tuple[Fraction, Dimensions]]:
-    """Size in SI and dimensions of the units of `_WITH_PREFIX` with every prefix."""
+    """Size in SI and dimensions of all units of `_WITH_PREFIX` with all prefixes."""
     symbols = {}
     for unit, (size, dimensions) in _WITH_PREFIX.items():
         for prefix, power in _POWERS.items():
@@ -245,7 +245,7 @@ def parse_unit(text: str) -> tuple[float, Dimensions] | None:
 
 
 def _factors(text: str) -> Iterable[tuple[int, str, str]]:
-    """Yield sign of the exponent, symbol and exponent of every factor of a unit."""
+    """Yield the factors of a unit: sign of the exponent, symbol, exponent."""
     # Powers are written in many ways, as m², m^2 and m2.
     plain = text.strip().replace("²", "2").replace("³", "3").replace("^", "")
     # A hyphen between letters is a product, as in kN-m.
@@ -260,14 +260,14 @@ def _factors(text: str) -> Iterable[tuple[int, str, str]]:
 
 
 def is_spelt_as_unit(text: str) -> bool:
-    """Check whether a word is a unit in any spelling (KN, inches), or kg."""
+    """Check whether a word is a unit in any spelling (kN, KN, inches), or kg."""
     symbols = [symbol for _, symbol, _ in _factors(text)]
     letters = [symbol for symbol in symbols if symbol not in "1-"]
     return bool(letters) and all(symbol.lower() in _SPELT for symbol in letters)
 
 
 def size_in(text: str, units: str) -> float | None:
-    """Size of a unit in one of others, as `Pa or m`; None if of other dimension."""
+    """Factor from a unit to one of `units`, as `Pa or m`; None for other dimensions."""
     given = parse_unit(text)
     for unit in units.split(" or "):
         wanted = parse_unit(unit)
@@ -277,7 +277,7 @@ def size_in(text: str, units: str) -> float | None:
 
 
 def unit_doubt(name: str, unit: str, size: float, usual: float, of: str) -> str:
-    """Words on numbers without a unit that are some thousand times off; else empty.
+    """Message on numbers without a unit, thousand times too large or small; else "".
 
     Parameters
     ----------
@@ -306,5 +306,5 @@ def unit_doubt(name: str, unit: str, size: float, usual: float, of: str) -> str:
 
 
 def examples_of(units: str) -> str:
-    """Words on units that a column may have, by the unit of a setting."""
+    """Text of examples of units that a column may have, by the unit of a setting."""
     return " or ".join(_EXAMPLES.get(unit, unit) for unit in units.split(" or "))

@@ -19,12 +19,12 @@ OTHER = "it is no workbook (.xlsx) and no text: save the table as CSV"
 
 
 def is_archive(data: bytes) -> bool:
-    """Check whether a file is an archive, as workbooks are, or an old workbook."""
+    """Check whether a file is an archive (as workbooks are), or an old workbook."""
     return data.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0"))
 
 
 def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
-    """Lines of the first sheet, without empty ones, and words on the sheet."""
+    """Lines of the first sheet, without empty ones, and messages on the sheet."""
     _check_archive(data, refuse)
     try:
         import openpyxl
@@ -57,7 +57,7 @@ def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
 
 
 def _check_archive(data: bytes, refuse: Refuse) -> None:
-    """Refuse archives that are no workbook, or are far larger when unpacked."""
+    """Refuse archives that are no workbook, or become too large when unpacked."""
     try:
         # Sizes are in the directory of an archive, so nothing is unpacked for this.
         parts = zipfile.ZipFile(io.BytesIO(data)).infolist()
@@ -70,7 +70,7 @@ def _check_archive(data: bytes, refuse: Refuse) -> None:
 
 
 def _text_of(value: object) -> str:
-    """Text of a cell; of a number all digits, with a decimal point."""
+    """Text of a cell; numbers with all digits and a decimal point."""
     if value is None:
         return ""
     return str(value).strip()

@@ -41,7 +41,7 @@ to 1."""
 
 @dataclass(frozen=True)
 class Anderson:
-    """Acceleration by mixtures of the last iterates, in which both stages agree best.
+    """Acceleration by mixtures of the last iterates that minimise the residual.
 
     One iteration maps the state y to g(y) with residual f = g(y) - y. The mixture g_n -
     sum_j gamma_j (g_j - g_{j-1}), where gamma makes f_n - sum_j gamma_j (f_j - f_{j-1})
@@ -53,7 +53,7 @@ class Anderson:
 
 
 class AndersonState:
-    """Remembered states of a run, held in full, and their mixture.
+    """Stored states of a run, as full fields, and their mixture.
 
     The images g are kept whole, of large residuals no more than a sample. Residuals are
     measured by k over boundary and time.
@@ -102,7 +102,7 @@ class AndersonState:
         self._forget()
 
     def _free(self, motion: Array, n_instants: int) -> _FreeMotion:
-        """Motion of the rows that counts for nothing, (n_rows,), on the sample."""
+        """Motion of the rows, (n_rows,), that has no weight in the residual."""
         times = np.arange(float(n_instants))
         by_group = []
         instants = []
@@ -120,11 +120,11 @@ class AndersonState:
         self._smallest = np.inf
 
     def start(self) -> None:
-        """Read the state y before an iteration."""
+        """Store the state y before an iteration."""
         self._start = self._sampled([group.state for group in self._groups])
 
     def mix(self) -> None:
-        """Replace the state g(y) after an iteration by the mixture, if there is one."""
+        """Replace the state g(y) after an iteration by a mixture, if possible."""
         residual = self._residual()
         size = float(np.sqrt(residual @ residual))
         if not size > 0.0 or not np.isfinite(size):
@@ -141,7 +141,7 @@ class AndersonState:
             self._mix()
 
     def _residual(self) -> Array:
-        """Sampled residual g(y) - y by the root of its weights, shape (n_sample,)."""
+        """Sampled residual g(y) - y, times the root of the weights, (n_sample,)."""
         residual = self._sampled([group.state for group in self._groups])
         np.subtract(residual, self._start, out=residual)
         np.multiply(residual, self._root, out=residual)
@@ -150,7 +150,7 @@ class AndersonState:
         return residual
 
     def _keep_image(self) -> None:
-        """Keep the state g(y) among the images."""
+        """Store the state g(y) among the images."""
         slot = self._slot_of(self._count)
 
         def keep(instants: slice) -> None:
@@ -160,7 +160,7 @@ class AndersonState:
         self._blocks.each(keep)
 
     def _remember(self, residual: Array) -> None:
-        """Keep the difference of a residual, (n_sample,), to the one before."""
+        """Store the difference of a residual, (n_sample,), to the previous one."""
         slot = self._count % self._memory
         newest = self._residuals[slot]
         np.subtract(residual, self._before, out=newest)
@@ -209,7 +209,7 @@ class AndersonState:
         return shares
 
     def _slot_of(self, number: int) -> int:
-        """Slot of an image by its number since the memory began."""
+        """Slot of an image by its index since the memory began."""
         return number % (self._memory + 1)
 
     def _sampled(self, fields: list[Array]) -> Array:
@@ -224,14 +224,14 @@ class AndersonState:
 
 
 class _FreeMotion:
-    """Motion at every instant along which residuals count for nothing.
+    """Motion at every instant along which residuals have no weight.
 
     Parameters
     ----------
     motion
         Weighted motion at the values of the sample, shape (n_sample,).
     instants
-        Number of the instant of every value, same shape.
+        Index of the instant of every value, same shape.
     """
 
     def __init__(self, motion: Array, instants: Indices) -> None:
@@ -247,7 +247,7 @@ class _FreeMotion:
 
 
 def _allowed_growth(problem: Problem) -> float:
-    """Growth of the residual over the smallest from which the memory is given up."""
+    """Growth of the residual over its minimum at which the memory is cleared."""
     if not problem.opens:
         # Where the bound of friction is known 1 is best; twice as much takes up to a
         # third more iterations to 1e-6.
@@ -258,7 +258,7 @@ def _allowed_growth(problem: Problem) -> float:
 
 
 def _step(smallest: int, n_rows: int) -> int:
-    """Step of the sample, from a smallest one on, that skips no row at all instants."""
+    """Smallest step of the sample that includes every row at some instant."""
     step = smallest
     while math.gcd(step, n_rows) > 1:
         step += 1

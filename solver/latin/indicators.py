@@ -131,7 +131,7 @@ structure counts as not moving."""
 
 
 def violation_of(problem: Problem, displacement: Array, force: Array) -> float:
-    """Violation of the laws by W and F, whatever k (MATHEMATICS.md, 4).
+    """Violation of the laws by W and F, independent of k (MATHEMATICS.md, 4).
 
     Friction with bound q and slip increment v violates its law by q|v| + F v with F cut
     to |F| <= q, which is nowhere negative and zero exactly where Coulomb's law holds,
@@ -177,7 +177,7 @@ def _known_groups(problem: Problem) -> list[ContactGroup]:
 
 
 def _worst(group: ContactGroup, violation: Violation, mean_slip: float) -> float:
-    """Largest violation of the law at any interface of a group, an energy, scaled."""
+    """Largest violation of the law at any interface of a group: an energy, scaled."""
     mean_force: Array | float = 0.0
     if violation.pressing is not None:
         pressed = np.maximum(violation.pressing, 0.0).mean(axis=1)
@@ -231,7 +231,7 @@ def _share_of_friction(problem: Problem, force: Array) -> float:
 def _gap_of_bonds(
     problem: Problem, displacement: Array, force: Array, noise: float
 ) -> float:
-    """Relative gaps of displacements and of forces at all other interfaces, added.
+    """Sum of relative gaps of displacements and of forces at all other interfaces.
 
     `displacement` and `force` have shape (n_rows, n_instants), scaled; gaps up to
     `noise` are rounding.
@@ -246,7 +246,7 @@ def _gap_of_bonds(
 
 
 def ratio(part: float, whole: float) -> float:
-    """Quotient, which is 0 for 0 / 0 and infinite for other numbers over 0."""
+    """Quotient: 0 for 0 / 0, and infinite for other numbers over 0."""
     if part == 0.0:
         return 0.0
     if whole != 0.0:

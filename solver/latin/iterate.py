@@ -50,7 +50,7 @@ class UpdateProgress:
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """State from which an iteration goes on exactly, but for its acceleration.
+    """State from which an iteration is resumed exactly, except its acceleration.
 
     An acceleration begins anew.
 
@@ -75,7 +75,7 @@ class Checkpoint:
 
 @dataclass(frozen=True, eq=False)
 class Iterate:
-    """LATIN iterate: the linear stage's s and the local stage's s^ that led to it.
+    """LATIN iterate: s of the linear stage, and s^ of the local stage before.
 
     Properties whose names do not begin with "boundary" are SI fields of the whole
     structure.
@@ -119,7 +119,7 @@ class Iterate:
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """State from which the iteration goes on."""
+        """State from which the iteration can be resumed."""
         k_update = self.k_update
         if k_update is not None and k_update.k is not self.k:
             # With another k, W and F stay and W + F/k changes.

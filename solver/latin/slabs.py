@@ -1,4 +1,4 @@
-"""Many cycles in slabs of time, each of which begins with the fields of the one before.
+"""Long histories in slabs of time: each begins with the last fields of the previous.
 
 A load that repeats itself, exactly or nearly, makes the fields of a cycle those of the
 cycle before or nearly so. Over the whole interval the iteration does not use that, and
@@ -57,7 +57,7 @@ class Slab:
 
 @dataclass(frozen=True, kw_only=True)
 class _OfWhole(SearchDirection):
-    """Search direction of the whole interval, `k` of shape (n_rows,), in a slab."""
+    """Search direction of the whole interval, `k` of shape (n_rows,), for a slab."""
 
     k: Array
 
@@ -98,7 +98,7 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
 
 
 def _check_slabs(problem: Problem, latin: Latin, length: int) -> None:
-    """Refuse a problem that slabs of `length` instants cannot solve one by one."""
+    """Refuse a problem that cannot be solved in slabs of `length` instants."""
     if length < 1:
         raise RefusedError(
             "slab", length, "instants, from 1 on", "give those of a cycle"
@@ -123,7 +123,7 @@ def _check_slabs(problem: Problem, latin: Latin, length: int) -> None:
 def _during(
     problem: Problem, some: slice, start: Mapping[str, Array] | None = None
 ) -> Problem:
-    """Problem at some successive instants.
+    """Problem restricted to some successive instants.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def _during(
 def next_slab(
     problem: Problem, slab: Slab, solved: Iterate, length: int
 ) -> Slab | None:
-    """Slab of `length` instants after one that is solved; None after the last."""
+    """Slab of `length` instants after a solved one; None after the last."""
     first = slab.instants.stop
     if first == problem.n_instants:
         return None
@@ -198,7 +198,7 @@ def solve_in_slabs(
     distance: Distance | None = None,
     spent: float = 0.0,
 ) -> Solution:
-    """Solve the whole interval, slab after slab, each until a stop rule ends it.
+    """Solve the whole interval slab by slab, each to its stop rule.
 
     The first slab is certified if it can be, whatever the method says, as its error
     would go on into all others. These end by estimate, as incremental solvers begin at
@@ -253,7 +253,7 @@ def _first_failure(solutions: Sequence[Solution]) -> Status:
 
 
 def _together(problem: Problem, parts: Sequence[Iterate]) -> Iterate:
-    """Iterate of the whole interval, without bases, from those of all slabs."""
+    """Iterate of the whole interval, without bases, joined from those of all slabs."""
     if len(parts) == 1:
         return parts[0]
 

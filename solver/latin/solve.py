@@ -72,7 +72,7 @@ def record(
     *,
     watch: bool = True,
 ) -> Record:
-    """Scalars of an iterate; those that no stop rule needed are off the run's clock.
+    """Scalars of an iterate; computing those for display alone is not run time.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Start from the solution on a coarser mesh, where a solution is cheap."""
+"""Start from the solution on a coarser mesh, where it is cheap."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Nested:
         check(self, coarser=FUNCTION)
 
     def of(self, problem: Problem, seconds: float = math.inf) -> Reference | None:
-        """Solution on the finest coarser mesh that has one, for `prolong`.
+        """Solution on the finest coarser mesh that can be solved, for `prolong`.
 
         None if there is no such mesh, or its solution takes longer than `seconds`.
         """
@@ -75,14 +75,14 @@ class Nested:
 
 
 def wrong_waves(solution: Reference) -> float:
-    """Length of the longest waves that a solution on a coarser mesh leaves wrong, m."""
+    """Largest wavelength that a solution on a coarser mesh does not resolve, m."""
     laws = solution.problem.contacts.laws.values()
     elements = [float(law.by_point(law.weights).max()) for law in laws]
     return WAVES * max(elements, default=math.inf)
 
 
 def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
-    """W + F/k of a solution on a coarser mesh, carried to a finer one.
+    """W + F/k of a solution on a coarser mesh, interpolated to a finer one.
 
     Displacement and contact force per length are linear between the coarse points; the
     forces on cuts and ends are those that the displacement needs inside each
@@ -113,7 +113,9 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
     # Curves on both meshes may differ in size, and with it their scales.
     displacement = solution.displacement / fine.scales.displacement
     if fine.inside is None:
-        inside = _interpolated(_apart(fine), _apart(coarse), displacement)
+        inside = _interpolated(
+            _positions_of_dofs(fine), _positions_of_dofs(coarse), displacement
+        )
     else:
         inside, is_known = _moved_contacts(coarse, displacement, fine)
         _balance(fine, inside, is_known)
@@ -127,7 +129,7 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
 
 
 def _check_meshes(coarse: Problem, fine: Problem) -> None:
-    """Refuse bodies that are no lines, and problems that are not of one structure."""
+    """Refuse bodies that are no lines, and meshes of different structures."""
     remedy = "start without one"
     for problem in (coarse, fine):
         if problem.inside is not None and not problem.inside.is_of_lines:
@@ -152,7 +154,7 @@ def _check_meshes(coarse: Problem, fine: Problem) -> None:
 def _moved_contacts(
     coarse: Problem, displacement: Array, fine: Problem
 ) -> tuple[Array, Flags]:
-    """Displacement of contacts, carried to the degrees of freedom of a finer mesh.
+    """Displacement of contacts, interpolated to degrees of freedom of a finer mesh.
 
     `displacement` is that of the coarser mesh, (n_coarse_dofs, n_instants), scaled.
 
@@ -165,7 +167,7 @@ def _moved_contacts(
     is_known = np.zeros(fine.n_dofs, dtype=bool)
     for name, target in fine.contacts.items():
         law = coarse.contacts[name]
-        places = _places(fine, target), _places(coarse, law)
+        places = _positions_of_points(fine, target), _positions_of_points(coarse, law)
         for component, carried in zip(law.components, target.components, strict=True):
             for rows, to_rows in zip(component.sides, carried.sides, strict=True):
                 of_points = law.mean_by_point(displacement[coarse.row_dofs[rows]])
@@ -179,7 +181,7 @@ def _moved_contacts(
 
 
 def _balance(problem: Problem, displacement: Array, is_known: Flags) -> None:
-    """Find displacements in elastic equilibrium with the known ones, in place.
+    """Complete known displacements, in place, to elastic equilibrium.
 
     `displacement` has shape (n_dofs, n_instants), scaled, `is_known` (n_dofs,).
     """
@@ -193,7 +195,7 @@ def _balance(problem: Problem, displacement: Array, is_known: Flags) -> None:
 
 
 def _contact_forces(solution: Reference, fine: Problem) -> tuple[Array, Flags]:
-    """Contact forces of a solution, carried to the rows of a finer mesh.
+    """Contact forces of a solution, interpolated to the rows of a finer mesh.
 
     Returns
     -------
@@ -215,14 +217,14 @@ def _contact_forces(solution: Reference, fine: Problem) -> tuple[Array, Flags]:
 def _shared_forces(
     coarse: Problem, force: Array, fine: Problem, name: str
 ) -> Iterator[tuple[Component, Array]]:
-    """Components of a finer mesh's interface, with the forces carried to its points.
+    """Components of a finer mesh's interface, with interpolated forces.
 
     `force` is that of the rows of the coarser mesh, shape (n_coarse_rows, n_instants),
     scaled; those carried have shape (n_pairs, n_instants).
     """
     law = coarse.contacts[name]
     target = fine.contacts[name]
-    places = _places(fine, target), _places(coarse, law)
+    places = _positions_of_points(fine, target), _positions_of_points(coarse, law)
     for component, carried in zip(law.components, target.components, strict=True):
         nodal = law.by_point(force[component.above])
         # Per length, as nodal forces depend on the mesh.
@@ -232,7 +234,7 @@ def _shared_forces(
 
 
 def _bodies(problem: Problem) -> Indices:
-    """Number of the body of every degree of freedom, from 0 on, shape (n_dofs,).
+    """Index of the body of every degree of freedom, from 0 on, shape (n_dofs,).
 
     Positions ascend along each rod.
     """
@@ -241,8 +243,8 @@ def _bodies(problem: Problem) -> Indices:
     return np.cumsum(np.diff(problem.positions, prepend=-1.0) <= 0.0)
 
 
-def _apart(problem: Problem) -> Array:
-    """Positions of the degrees of freedom, with rods laid end to end and apart.
+def _positions_of_dofs(problem: Problem) -> Array:
+    """Positions of the degrees of freedom, with rods laid end to end with gaps.
 
     Shape (n_dofs,), m; no rod touches the next.
     """
@@ -251,8 +253,8 @@ def _apart(problem: Problem) -> Array:
     )
 
 
-def _places(problem: Problem, law: Contact) -> Array:
-    """Positions of an interface's points, those on different rods apart.
+def _positions_of_points(problem: Problem, law: Contact) -> Array:
+    """Positions of an interface's points, with rods laid end to end with gaps.
 
     Shape (n_points,), m; in the plane as shares of the length of the interface, as a
     curve is a little longer on a finer mesh.
@@ -268,7 +270,7 @@ def _places(problem: Problem, law: Contact) -> Array:
 
 
 def _interpolated(fine: Array, coarse: Array, values: Array) -> Array:
-    """Interpolate values in space, linear between the coarse positions.
+    """Interpolate values linearly between coarse positions.
 
     `fine` and `coarse` are positions, shapes (n_fine,) and (n_coarse,), m, `values`
     have shape (n_coarse, n_instants); the result has shape (n_fine, n_instants).

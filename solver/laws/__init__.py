@@ -1,4 +1,4 @@
-"""Interface laws: prescribed values, glued cuts, contact and friction, vectorised."""
+"""Interface laws, vectorised: prescribed values, glued cuts, contact and friction."""
 
 from solver.laws.contact import OPEN, Contact
 from solver.laws.friction import Friction, FrictionLaw

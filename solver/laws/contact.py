@@ -1,4 +1,4 @@
-"""Contact: two sides that stick and slip, and open where contact may be lost.
+"""Contact law: sides stick or slip, and open where contact may be lost.
 
 A contact is a normal law and a friction law put together. Where the pressure is known
 there is no normal law. A rigid support or another body lies below. Forces act on the
@@ -43,7 +43,7 @@ OPEN = 2
 
 @dataclass(frozen=True, eq=False)
 class Violation:
-    """Fields of one interface from which the violation of its law follows.
+    """Fields that determine the violation of a contact law.
 
     All have the shape (n_pairs, n_instants), scaled.
 
@@ -155,7 +155,7 @@ class Contact(Pairs):
             )
 
     def incremental_form(self) -> IncrementalForm | None:
-        """The law itself; None where a part of it is of a user's subclass.
+        """The law itself; None if a part is an instance of a user's subclass.
 
         Incremental solvers read the fields of the classes here, and would not see what
         a subclass changes.
@@ -190,7 +190,7 @@ class Contact(Pairs):
 
     @property
     def is_plain(self) -> bool:
-        """Check whether a rod of known bound slips on a support, without springs."""
+        """Check whether the law is that of a rod on a support, with a known bound."""
         if (
             not self.is_on_support
             or not isinstance(self.stiffness_beside, RodStiffness)
@@ -209,7 +209,7 @@ class Contact(Pairs):
 
     @property
     def kind(self) -> Hashable:
-        """Key that is equal for interfaces that can be concatenated."""
+        """Key of laws: those with equal keys can be concatenated."""
         friction = self.tangential
         normal = self.normal
         return (
@@ -269,7 +269,7 @@ class Contact(Pairs):
 
     @cached_property
     def _interface_of_macro(self) -> Indices:
-        """Number of the interface of each column of the macro basis, (n_macro,)."""
+        """Index of the interface of each column of the macro basis, (n_macro,)."""
         assert self.macro is not None
         entries = sparse.coo_array(self.macro)
         owners = np.zeros(self.macro.shape[1], dtype=np.intp)
@@ -333,7 +333,7 @@ class Contact(Pairs):
         return np.concatenate(of_components)
 
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
-        """Violation of the balance of both sides' forces, as `Interface.gaps`.
+        """Violation of action and reaction between both sides, as `Interface.gaps`.
 
         Displacements obey no linear law at a contact. Where a part is of a user's
         subclass, the local stage finds all violations.
@@ -349,7 +349,7 @@ class Contact(Pairs):
         return Gaps(force=unbalanced)
 
     def violation(self, displacement: Array, force: Array, noise: float) -> Violation:
-        """Prepare the check of W and F against the law; parameters as of `gaps`."""
+        """Fields for the violation of the law by W and F; parameters as `gaps`."""
         opening = None
         pressing = None
         if self.normal is not None:
@@ -371,14 +371,14 @@ class Contact(Pairs):
         )
 
     def capacity(self, held: NDArray[np.bool_]) -> float:
-        """Largest friction force without pressing of pairs not held, scaled.
+        """Largest friction force without a normal force, of pairs not held, scaled.
 
         `held` is a mask of all rows, (n_rows,).
         """
         return float(self.tangential.bound.max(axis=1)[~held[self.tangent.above]].sum())
 
     def carried(self, force: Array) -> float:
-        """Largest force on a pair of a contact that may open, else 0.
+        """Largest force on a pair if the contact may open; else 0.
 
         `force` is that of all rows, (n_rows, n_instants), scaled.
         """
@@ -389,7 +389,7 @@ class Contact(Pairs):
 
     @property
     def is_moved(self) -> bool:
-        """Check whether bodies overlap or sliders are displaced before all loads."""
+        """Check whether bodies overlap, or sliders are displaced, before any load."""
         if self.normal is not None and self.normal.gap.min(initial=0.0) < 0.0:
             return True
         start = self.tangential.start

@@ -33,7 +33,7 @@ OPENED = 1e-9
 
 @dataclass(frozen=True)
 class FrictionLaw:
-    """Parameters of the friction law beside mu and pressure; by default Coulomb's law.
+    """Parameters of the friction law besides mu and pressure; default: Coulomb's law.
 
     "Area" is the tributary length along a rod, in m, and the area of a metre of
     thickness in the plane, in m^2.
@@ -124,7 +124,7 @@ class FrictionLaw:
         )
 
     def of_one_side(self) -> FrictionLaw:
-        """Law over the displacement of a body on its image, which moves the other way.
+        """Law of a body on its mirror image, which moves the opposite way.
 
         The body moves by half of the slip, so that over its own displacement the spring
         is twice as stiff, and the factor changes after half the slip.
@@ -136,7 +136,7 @@ class FrictionLaw:
         return replace(self, stiffness=2.0 * self.stiffness, slip_factor=slip_factor)
 
     def bound_before_slip(self, rubbed: Array, size: float = 1.0) -> Array:
-        """Largest friction force before slip, of the shape of `rubbed`, mu N.
+        """Friction bound before any slip, of the shape of mu N.
 
         Both are forces, N, on an area `size`, m or m^2, or per area with size 1.
         """
@@ -153,7 +153,7 @@ class FrictionLaw:
 def compliance_of(
     stiffness: float, weights: Array, scales: tuple[float, float]
 ) -> Array | None:
-    """Compliance of pairs, (n_pairs,), scaled; None for an infinite stiffness.
+    """Compliance of pairs, (n_pairs,), scaled; None for infinite stiffness.
 
     `stiffness` is per area, `weights` are the areas of the pairs, (n_pairs,), m or m^2,
     `scales` the units of length, m, and of force, N.
@@ -212,7 +212,7 @@ class Friction:
 
     @property
     def has_friction(self) -> bool:
-        """Check whether there is any friction."""
+        """Check whether there is friction at any pair."""
         return bool(self.bound.any() or self.friction.any())
 
     def slider(self, displacement: Array, force: Array | None) -> Array:
@@ -250,7 +250,7 @@ class Friction:
     def bound_before_slip(
         self, pressing: Array | None, opening: Array | None = None
     ) -> Array:
-        """Largest friction force before slip, (n_pairs, n_instants), scaled.
+        """Friction bound before any slip, (n_pairs, n_instants), scaled.
 
         With a known pressure it has the shape of the bound. `pressing` is the pressing
         force, None where the pressure is known, `opening` the distance of the sides
@@ -268,7 +268,7 @@ class Friction:
     def bound_after_slip(
         self, pressing: Array | None, slip: Array, opening: Array | None = None
     ) -> Array:
-        """Largest friction force after increments of slip, (n_pairs, n_instants)."""
+        """Friction bound after increments of slip, (n_pairs, n_instants), scaled."""
         bound = np.broadcast_to(self.bound_before_slip(pressing, opening), slip.shape)
         if self.slip_factor is None:
             return bound
@@ -276,7 +276,7 @@ class Friction:
 
     @property
     def largest_bound(self) -> Array:
-        """Largest known part of the bound at any slip, of the shape of the bound."""
+        """Largest known part of the bound over all slips, of the shape of the bound."""
         if self.slip_factor is None:
             return self.bound
         return self.bound * max(self.slip_factor.factors)
@@ -305,7 +305,7 @@ class Friction:
 
 
 def is_intact(opening: Array, pressing: Array) -> Array:
-    """1 while a bond is intact, and 0 from the first opening on.
+    """Flags of bonds: 1 while intact, 0 from the first opening on.
 
     Opening, pressing force, scaled, and result are (n_pairs, n_instants).
     """

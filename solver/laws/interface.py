@@ -1,4 +1,4 @@
-"""The `Interface` of substructures: components, search directions, rules, gaps."""
+"""Base of interface laws: components, search directions, rules, gaps."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Component(NamedTuple):
     below: Indices | None = None
 
     def jump(self, field: Array) -> Array:
-        """A field, (n_rows, ...), above minus below, shape (n_pairs, ...)."""
+        """Jump of a field, (n_rows, ...): above minus below, shape (n_pairs, ...)."""
         above: Array = field[self.above]
         if self.below is None:
             return above
@@ -66,7 +66,7 @@ class Springs:
     def close(
         self, incoming: Array, jump: Array, held: Array, displacement: Array
     ) -> None:
-        """Write W^ of both sides, with which the jump is `held` instead of `jump`.
+        """Write W^ of both sides such that the jump is `held` instead of `jump`.
 
         Fields of all rows are (n_rows, n_instants), jumps (n_pairs, n_instants),
         scaled.
@@ -119,7 +119,7 @@ class PrescribedRows(NamedTuple):
 
 
 class Glued(NamedTuple):
-    """Rows that move as one, opposite each other, (n_pairs,) each."""
+    """Pairs of opposite rows with equal displacement, (n_pairs,) each."""
 
     first: Indices
     second: Indices
@@ -127,7 +127,7 @@ class Glued(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class IncrementalForm:
-    """Form in which a law enters the incremental problem, as its solvers read it.
+    """Form in which a law enters the incremental problem.
 
     Without any of these the interface is free.
 
@@ -167,7 +167,7 @@ class Interface(ABC):
     remembers = False
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Reset methods `OF_ONE_LAW` of a class without its own incremental form."""
+        """Reset the methods `OF_ONE_LAW` in a subclass without an incremental form."""
         super().__init_subclass__(**options)
         # A class that says its incremental form knows what it inherits.
         if "incremental_form" in vars(cls):
@@ -182,17 +182,17 @@ class Interface(ABC):
 
     @property
     def n_instants(self) -> int | None:
-        """Number of instants of the law's values; None where they fit any number."""
+        """Number of instants of the law's values; None for constant values."""
         return None
 
     @classmethod
-    def together(cls, laws: Sequence[Self]) -> list[Self]:
-        """Join interfaces of one law, without macro bases, if they can be joined."""
+    def join(cls, laws: Sequence[Self]) -> list[Self]:
+        """Join interfaces of one law to one, without macro bases, if possible."""
         return list(laws)
 
     @abstractmethod
     def rule(self, k: Array, n_instants: int) -> Rule:
-        """Prepare the local stage for k of all rows, (n_rows,), scaled."""
+        """Make the local stage for k of all rows, (n_rows,), scaled."""
 
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """Violations of continuity and balance by W and F, (n_rows, n_instants).
@@ -222,7 +222,7 @@ class Interface(ABC):
         return iter(())
 
 
-OF_ONE_LAW = "incremental_form", "together", "gaps", "during", "macro_parts"
+OF_ONE_LAW = "incremental_form", "join", "gaps", "during", "macro_parts"
 """Methods that depend on the local stage, and may be wrong for that of a subclass."""
 
 
@@ -281,7 +281,7 @@ def restricted(whole: Any, pairs: slice) -> Any:
 
 
 def beyond(field: Array, noise: float | Array) -> Array:
-    """A field with zero in place of values up to `noise`, of the same shape."""
+    """A field less its noise: values up to `noise` become zero, of the same shape."""
     return np.where(np.abs(field) > noise, field, 0.0)
 
 

@@ -26,7 +26,7 @@ from solver.laws.interface import (
 
 @dataclass(frozen=True)
 class _Given(Interface):
-    """Values, (n_rows, n_instants), scaled, prescribed at boundary rows, (n_rows,)."""
+    """Prescribed values, (n_rows, n_instants), scaled, at boundary rows, (n_rows,)."""
 
     rows: Indices
     values: Array
@@ -122,7 +122,7 @@ class Perfect(Interface):
         return np.concatenate([self.first, self.second])
 
     def incremental_form(self) -> IncrementalForm:
-        """Rows of both sides glued together."""
+        """Pairs of glued rows."""
         return IncrementalForm(glued=Glued(self.first, self.second))
 
     def during(self, _instants: slice) -> Self:
@@ -130,8 +130,8 @@ class Perfect(Interface):
         return self
 
     @classmethod
-    def together(cls, laws: Sequence[Self]) -> list[Self]:
-        """Join all cuts to one, without macro bases."""
+    def join(cls, laws: Sequence[Self]) -> list[Self]:
+        """Join all cuts to one law, without macro bases."""
         return [joined([replace(law, macro=law.macro[:, :0]) for law in laws])]
 
     def rule(self, k: Array, n_instants: int) -> Rule:
@@ -172,5 +172,5 @@ class Perfect(Interface):
 
 
 def _at(field: Array, rows: Indices) -> Array:
-    """Rows, (n,), of a field, (n_rows, n_times), as in memory: (n_times, n)."""
+    """Rows, (n,), of a field, (n_rows, n_times), in memory order: (n_times, n)."""
     return np.take(field.T, rows, axis=1)

@@ -1,4 +1,4 @@
-"""Pairs of points of two sides: their points, and the interfaces that they lie on."""
+"""Pairs of opposite points of two sides, with their points and interfaces."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from solver.refusal import RefusedError, Words
 
 @dataclass(frozen=True, kw_only=True)
 class Pairs(Interface):
-    """Pairs of a point of the body above and what lies below it.
+    """Pairs of a point of the body above and its opposite below.
 
     A point has two pairs where a cut crosses the interface, or ends at it. One law may
     hold on many interfaces, as in a wall: points and pairs of one then follow those of
@@ -67,7 +67,7 @@ class Pairs(Interface):
             self._check_order(np.asarray(self.interfaces))
 
     def _check_order(self, interfaces: Indices) -> None:
-        """Refuse interfaces without points, or whose points or pairs are mixed."""
+        """Refuse interfaces without points, and points or pairs out of order."""
         steps_of_points = np.diff(interfaces)
         steps_of_pairs = np.diff(interfaces[self.points])
         is_sorted = np.all(steps_of_points >= 0) and np.all(steps_of_pairs >= 0)
@@ -111,7 +111,7 @@ class Pairs(Interface):
 
     @cached_property
     def interface_of_pairs(self) -> Indices:
-        """Number of the interface of each pair, ascending, shape (n_pairs,)."""
+        """Index of the interface of each pair, ascending, shape (n_pairs,)."""
         if self.interfaces is None:
             return np.zeros(len(self.points), dtype=np.intp)
         return self.interfaces[self.points]
@@ -127,12 +127,12 @@ class Pairs(Interface):
         return list(zip(points, pairs_of, strict=True))
 
     def spread_to_interfaces(self, points: Flags) -> Flags:
-        """Points of interfaces of which any point counts; masks, (n_points,)."""
+        """Mask of all points of interfaces with a point in a mask, (n_points,) both."""
         counts = [points[some].any() for some, _ in self.ranges]
         return np.repeat(counts, self.sizes)
 
     def sums(self, values: Array) -> Array:
-        """Sums over the pairs of each interface, to the bit those of it alone.
+        """Sums over the pairs of each interface, equal to the bit to separate sums.
 
         From values of pairs, (n_pairs, ...), to (n_interfaces, ...).
         """
@@ -152,7 +152,7 @@ class Pairs(Interface):
 
     @cached_property
     def _are_single(self) -> bool:
-        """Check whether each point has one pair, and they come in the same order."""
+        """Check whether pairs and points are the same, in the same order."""
         return np.array_equal(self.points, np.arange(len(self.positions)))
 
     @cached_property
@@ -174,7 +174,7 @@ class Pairs(Interface):
         return np.asarray(self.by_point(values) / counts.reshape(-1, *trailing))
 
     def in_parallel(self, compliance: Array | None) -> Array:
-        """Compliance of every point from that of its pairs in parallel, (n_points,).
+        """Compliance of every point, (n_points,), with its pairs in parallel.
 
         Zero without compliances of the pairs, (n_pairs,).
         """

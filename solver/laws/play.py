@@ -38,7 +38,7 @@ def play(target: Array, slack: Array) -> Array:
 
 
 class Play:
-    """The play operator for one size: compose inside all blocks, carry across, apply.
+    """The play operator for fields of one size, as a scan over blocks of instants.
 
     The positions begin at `start`, shape (n_points,), or at zero.
 
@@ -140,7 +140,7 @@ class SlipFactor:
 
     @property
     def slopes(self) -> Array:
-        """Growth per slip between the points, and none beyond, shape (n_points,)."""
+        """Slope of the factor between points, 0 beyond, shape (n_points,)."""
         return np.asarray(np.append(np.diff(self.factors) / np.diff(self.slips), 0.0))
 
     @cached_property
@@ -150,16 +150,16 @@ class SlipFactor:
         return np.asarray(np.append(0.0, np.cumsum(rises)))
 
     def rise(self, slip: Array) -> Array:
-        """Sum of the rises of the factor up to a slip, of any shape, without falls."""
+        """Sum of the rises of the factor, without falls, up to slips of any shape."""
         risen: Array = np.interp(slip, self.slips, self.rising)
         return risen
 
     def segment(self, slip: Array) -> Indices:
-        """Number of the last point up to each slip, of any shape."""
+        """Index of the last point up to each slip, of any shape."""
         return np.asarray(np.searchsorted(self.slips, slip, side="right") - 1)
 
     def slope(self, slip: Array) -> Array:
-        """Growth per further slip, of any shape."""
+        """Slope of the factor at slips of any shape."""
         return np.asarray(self.slopes[self.segment(slip)])
 
     def lowest_slope(self, first: Array, last: Array) -> Array:
@@ -176,7 +176,7 @@ PLAIN = SlipFactor((0.0, 1.0), (1.0, 1.0))
 
 
 def follow(target: Array, slack: Array, slip_factor: SlipFactor) -> Array:
-    """Positions of sliders whose slack changes with the slip that they accumulate.
+    """Positions of sliders whose slack changes with accumulated slip.
 
     `target` are the positions without friction, (n_points, n_instants), m or scaled;
     `slack` is the distance at which each starts to slip before it has slipped, of the

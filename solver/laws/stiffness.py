@@ -82,7 +82,7 @@ class RodStiffness:
     (measured)."""
 
     def choose(self, law: Pairs, k: Array, parts: float) -> None:
-        """Write the k of interfaces into that of all rows, (n_rows,), scaled.
+        """Write k of interfaces into k of all rows, (n_rows,), scaled, in place.
 
         `parts` is the number of interfaces over the share of one that slides, `k` that
         of all rows, which is changed in place.
@@ -154,7 +154,7 @@ class BodyStiffness:
                 k[rows] = modulus * stiffness * share
 
     def choose_sticking(self, law: Pairs, k: Array) -> None:
-        """Write the k of two bodies that nowhere slip on each other, as `choose`.
+        """Write k of two bodies that stick everywhere on each other, as `choose`.
 
         They bend and stretch as one body, except for deformations as short as their
         depth d, which the softer body resists with E / d per area, across and along. Of
@@ -165,7 +165,7 @@ class BodyStiffness:
         stiffen(law, k, squeezed)
 
     def _slender(self, law: Pairs, length: Array) -> Array:
-        """Factor on k between two bodies that are thin beside their length.
+        """Factor on k between two slender bodies, of a length, m.
 
         Layers slide like rods, of stiffness E d / l^2 per area as a whole, with the
         depth d along the contact's length l; and E d / (l h) from point to point, h
@@ -182,7 +182,7 @@ class BodyStiffness:
 
 @dataclass(frozen=True, eq=False)
 class NodalStiffness:
-    """Stiffness of bodies of any shape, as seen by every pair of an interface.
+    """Stiffness of bodies of any shape at every pair of an interface.
 
     The bodies as a whole resist a displacement of all pairs with one stiffness, and
     that of one pair alone, with its neighbours held, with another. k is their geometric
@@ -213,7 +213,7 @@ class NodalStiffness:
     on_cuts: ClassVar[float] = BodyStiffness.on_cuts
 
     def choose(self, law: Pairs, k: Array, parts: float) -> None:
-        """Write the k of interfaces into that of all rows, as `RodStiffness.choose`."""
+        """Write k of interfaces into k of all rows, as `RodStiffness.choose`."""
         factor = BETWEEN_BODIES
         if law.is_on_support:
             factor = FRICTION_FACTOR
@@ -226,7 +226,7 @@ class NodalStiffness:
                 k[rows] = stiffness[:, number, side]
 
     def choose_for_short_waves(self, law: Pairs, k: Array, waves: float) -> None:
-        """Raise the k of lines of beams on a support, where only short waves are wrong.
+        """Raise k of lines of beams on a support, for errors of short wavelength.
 
         A line of the length l resists as a whole with E A / l, and waves of the length
         `waves`, m, with E A / `waves`; k, (n_rows,), is changed in place. Between
@@ -242,12 +242,12 @@ class NodalStiffness:
                 k[rows] *= factor
 
     def choose_sticking(self, law: Pairs, k: Array) -> None:
-        """Write the k of two bodies that nowhere slip, as `BodyStiffness.stick`."""
+        """Write k of two bodies that stick everywhere, as `BodyStiffness`."""
         stiffen(law, k, self.squeezed)
 
 
 def of_whole_mesh(depth: Array, length: Array, *, on_support: bool) -> Array:
-    """Stiffness over E of bodies against a displacement of a whole joint, (n_joints,).
+    """Stiffness over E against a displacement of a whole joint, (n_joints,).
 
     About 1 of a body as large as the joint is long. A body of the depth d behind a
     joint of length l slides like a rod on another if it is thin, with d / l
@@ -272,7 +272,7 @@ def of_whole_mesh(depth: Array, length: Array, *, on_support: bool) -> Array:
 
 
 def stiffen(law: Pairs, k: Array, least: Array) -> None:
-    """Raise the k of interfaces between bodies to a least one of each pair, (n_pairs,).
+    """Raise k of interfaces between bodies to a minimum for each pair, (n_pairs,).
 
     `k` is that of all rows, (n_rows,), scaled, and is changed in place. Where it is
     larger it stays.

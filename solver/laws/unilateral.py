@@ -1,4 +1,4 @@
-"""Unilateral contact: sides press on each other or open, and never overlap or pull.
+"""Unilateral contact (Signorini): sides press or open, and never overlap or pull.
 
 A compliance 1 / k_n may be in series: with the opening g and the pressing force N, g +
 N / k_n >= 0, N >= 0, and one of the two is zero. In the local stage the spring k_n and
@@ -109,7 +109,7 @@ class ContactRule:
     def _press(
         self, incoming: Array, displacement: Array
     ) -> tuple[Array, Array | None]:
-        """Write W^ across; return the pressing force, and the opening if bonds break.
+        """Write W^ across; return the pressing force, and the opening for bonds.
 
         Shape (n_pairs, n_instants) both, scaled.
         """

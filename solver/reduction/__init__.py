@@ -1,1 +1,1 @@
-"""Model reduction: what the fields of an interface could be reduced to."""
+"""Model reduction: compact forms of the fields of an interface."""

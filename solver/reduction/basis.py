@@ -81,7 +81,7 @@ class SeparatedBasis:
         return float(np.sum(time_functions * time_functions @ self.weights))
 
     def appended(self, mode: Array, time_function: Array) -> SeparatedBasis:
-        """Basis with a pair more, whose mode is orthonormal to the others."""
+        """Basis with a further pair, whose mode is orthonormal to the others."""
         modes = np.asfortranarray(np.column_stack([self.modes, mode]))
         time_functions = np.vstack([self.time_functions, time_function])
         return replace(self, modes=modes, time_functions=time_functions)
@@ -105,7 +105,7 @@ class SeparatedBasis:
         return mode
 
     def downsized(self, tolerance: float, largest: int) -> SeparatedBasis:
-        """Basis of the field's singular vectors, sorted, without the smallest.
+        """Basis of the field's largest singular vectors, in descending order.
 
         These are dropped up to `tolerance`, a share of the field's norm, and in any
         case beyond the `largest` number of modes. As modes are orthonormal, the
@@ -125,7 +125,7 @@ class SeparatedBasis:
         return replace(self, modes=modes, time_functions=time_functions)
 
     def outside(self, other: SeparatedBasis) -> float:
-        """Share of this field that lies outside another's modes, in norm."""
+        """Norm of the part outside another basis's modes over the field's norm."""
         whole = self.squared_of(self.time_functions)
         if whole == 0.0:
             return 0.0

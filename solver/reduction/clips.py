@@ -1,4 +1,4 @@
-"""A friction field as clips with memory: two vectors per branch of the load.
+"""A friction field as clips with memory: two vectors for each branch of the load.
 
 A slip front is no sum of a few products, but a fixed function of one product: as in the
 Front Transport Reduction of P. Krah and others (J. Sci. Comput. 96, 28, 2023). The
@@ -34,7 +34,7 @@ of all points."""
 
 @dataclass(frozen=True, eq=False)
 class Clips:
-    """A friction field, and clips with memory fitted to it and to its strength.
+    """A friction field, and clips with memory fitted to the field and its strength.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class Clips:
 
     @cached_property
     def errors(self) -> Array:
-        """Errors with 0 to n_modes singular vectors of the rest, (n_modes + 1,).
+        """Errors with 0 to n_modes singular vectors of the residual, (n_modes + 1,).
 
         Relative to the field in L2 over length and time; zero for a field that
         vanishes.
@@ -120,14 +120,14 @@ def clips_of(
 
 
 def _size_of(strength: Array) -> Array:
-    """Share of its largest value that a strength has at each instant, (n_instants,)."""
+    """Strength at each instant over its largest value, (n_instants,)."""
     size = strength.max(axis=0)
     largest = float(size.max(initial=0.0)) or 1.0
     return np.asarray(np.maximum(size / largest, FADED))
 
 
 def monotone(load: Array) -> Iterator[slice]:
-    """Yield the branches of a load: instants at which it goes one way or stands still.
+    """Yield the monotone branches of a load, as ranges of instants.
 
     The load, shape (n_instants,), is zero before the first instant.
     """
@@ -218,7 +218,7 @@ def _ramps(
 
 
 class _NearestLines:
-    """The lines, one a point, whose clips are nearest to the shares of their points.
+    """For each point the line whose clip is nearest to the shares of the point.
 
     Shares, stops, load and weights are those of `_ramps`.
 
@@ -242,7 +242,7 @@ class _NearestLines:
         return np.asarray(slope[:, None] * self._load + offset[:, None])
 
     def keep(self, slope: Array, offset: Array) -> None:
-        """Take other lines, (n_points,), at the points where they are nearer.
+        """Replace lines at the points where other lines, (n_points,), are nearer.
 
         A line that does not rise counts as one that keeps the friction of its point.
         """
@@ -258,7 +258,7 @@ class _NearestLines:
 
 
 def _steepest(shares: Array, low: Array, rises: Array) -> Array:
-    """Larger slope of a point before and after each instant, (n_points, n_instants).
+    """Larger of the slopes before and after each instant, (n_points, n_instants).
 
     Shares and stops are those of `_ramps`; `rises` are those of the load, shape
     (n_instants,).
@@ -270,7 +270,7 @@ def _steepest(shares: Array, low: Array, rises: Array) -> Array:
 
 
 def _entries(shares: Array, low: Array) -> Iterator[Indices | int]:
-    """Yield instants through which lines go: of each point, (n_points,), or of all.
+    """Yield instants for lines to pass through: for each point, (n_points,), or all.
 
     Shares and stops are those of `_ramps`.
     """

@@ -1,4 +1,4 @@
-"""Numbers that a friction field takes for an error: in products, modes, or clips.
+"""Storage of a friction field for an error: as products, modes, or clips.
 
 A product of a space vector and a function of time takes as many numbers as both
 together. Errors are relative to the field, in L2 over length and time.
@@ -25,24 +25,24 @@ that."""
 
 @dataclass(frozen=True, eq=False)
 class Sizes:
-    """Errors of a field that is kept in more and more numbers, shape (n,) each."""
+    """Errors of a field over the count of stored numbers, shape (n,) each."""
 
     numbers: Indices
     errors: Array
 
     def within(self, share: float) -> float:
-        """Fewest numbers that bring the error within a share; else infinite."""
+        """Smallest count with an error within a share; infinite without one."""
         return float(min(self.numbers[self.errors <= share], default=math.inf))
 
 
 def of_products(product: Decomposition) -> Sizes:
-    """Sizes with the largest singular vectors, the best sums of products."""
+    """Sizes of the largest singular vectors: the best sums of products."""
     numbers = len(product.space_modes) + product.time_modes.shape[1]
     return Sizes(numbers * np.arange(len(product.errors)), product.errors)
 
 
 def of_clips(clips: Clips) -> Sizes:
-    """Sizes with clips with memory, and singular vectors of the rest.
+    """Sizes of clips with memory, and singular vectors of the residual.
 
     Clips take two vectors and an instant for each branch, the load, and the strength.
     """
@@ -57,7 +57,7 @@ def of_clips(clips: Clips) -> Sizes:
 
 
 def _numbers_of_strength(strength: Array) -> int:
-    """Numbers of a strength, (n_points, n_instants): fewer if only its size changes."""
+    """Count of numbers that store a strength, (n_points, n_instants)."""
     sizes = strength.max(axis=0)
     largest = float(strength.max(initial=0.0))
     shape = strength[:, [int(sizes.argmax())]] / (largest or 1.0)
@@ -70,7 +70,7 @@ def _numbers_of_strength(strength: Array) -> int:
 
 
 def of_bases(problem: Problem, force: Array, bases: Sequence[SharedBasis]) -> Sizes:
-    """Sizes with the largest modes of a run's separated bases, as many of each.
+    """Sizes of the largest modes of separated bases, equally many of each.
 
     The field is friction, between two bodies that of the body above. Of space modes the
     entries count that rub; those of a basis that several substructures share, once.
@@ -119,7 +119,7 @@ def _add_squares(
     number: int,
     basis: SharedBasis,
 ) -> None:
-    """Add the squared rest of one substructure with 0, 1, ... modes, (n_modes + 1,).
+    """Add the squared residual of a substructure with 0, 1, ... modes, (n_modes + 1,).
 
     By F of all rows, (n_rows, n_instants), scaled, and their lengths, (n_rows,), m.
     """

@@ -79,7 +79,7 @@ def decompose(
     time_weights: Array,
     positions: Array | None = None,
 ) -> Decomposition:
-    """Decomposition of a field, (n_points, n_instants), in weighted inner products."""
+    """Decompose a field, (n_points, n_instants), in weighted inner products."""
     space_root = np.sqrt(space_weights)[:, None]
     time_root = np.sqrt(time_weights)
     # Weighted by roots, the plain decomposition is that in the weighted inner products.
@@ -108,7 +108,7 @@ def decompositions(
     *,
     is_force: bool,
 ) -> list[Decomposition]:
-    """Decompositions of F or W on the rows that rub, of some substructures or all.
+    """Decompositions of F or W on rows with friction, for some substructures or all.
 
     Of fields of all rows, (n_rows, n_instants), scaled. Singular values of the friction
     force, per length, are in N sqrt(s/m), of the displacement in m sqrt(m s).

@@ -10,11 +10,11 @@ from solver.discrete.problem import Problem
 
 
 class NoReferenceError(ValueError):
-    """No reference can be found; the message says why."""
+    """Error: no reference can be found; the message says why."""
 
 
 class Interrupted(Exception):  # noqa: N818  # asked for by the caller, so no error
-    """The caller asked the solver to stop before the last instant."""
+    """Interruption of a solver by its caller before the last instant."""
 
 
 def assembled_stiffness(problem: Problem) -> sparse.csr_array:
@@ -59,7 +59,7 @@ def external_force(problem: Problem) -> Array:
 
 
 def points_dofs(problem: Problem) -> Indices:
-    """Degree of freedom of every point that rubs, by interfaces, shape (n_points,)."""
+    """Degree of freedom of every point with friction, in stacked order, (n_points,)."""
     dofs = np.zeros(problem.contacts.n_points, dtype=np.intp)
     for law, _, points, _ in problem.contacts.stacks:
         dofs[points[law.points]] = problem.row_dofs[law.tangent.above]
@@ -67,7 +67,7 @@ def points_dofs(problem: Problem) -> Indices:
 
 
 def jumps(problem: Problem) -> sparse.csr_array:
-    """J, the jumps of all pairs, shape (n_forces, n_dofs)."""
+    """Matrix J of the jumps of all pairs, shape (n_forces, n_dofs)."""
     rows = []
     columns = []
     values = []

@@ -1,4 +1,4 @@
-"""Condensation of a structure to its contacts: stiffness and load between all jumps.
+"""Condensation of a structure to its contacts: stiffness and load of all jumps.
 
 With J the jumps of the displacement (above minus below), the displacement u under
 contact forces f is that of K u = F + J' f. It is u = T j + Z a
@@ -75,7 +75,7 @@ BLOCK = 500
 
 
 class GluedStructure:
-    """The structure glued at its contacts: what no friction and no load changes.
+    """The structure glued at its contacts: independent of friction and loads.
 
     It is kept between runs (`solver.cache`).
 
@@ -150,7 +150,7 @@ class GluedStructure:
 
     @property
     def nbytes(self) -> int:
-        """Memory that the structure takes, B, without what is sparse and small."""
+        """Memory of the dense arrays, B."""
         dense = [self.stiffness, self.motions, self.gauge, self.stresses]
         dense += [self.given, self.given_force]
         entries: int = self._factor.nnz + self.pulled.nnz
@@ -173,7 +173,7 @@ class GluedStructure:
         return forces
 
     def balanced(self, forces: Array) -> Array:
-        """Forces or jumps of the base less their part in forces that move nothing.
+        """Forces or jumps of the base, projected off self-stresses.
 
         Both have the shape (n_base, n_instants).
         """
@@ -184,7 +184,7 @@ class GluedStructure:
         return balanced
 
     def _tie(self, stiffness: Array) -> None:
-        """Tie jumps of the base that depend on others, in S (n_base, n_base)."""
+        """Add stiffness to dependent jumps of the base, in S (n_base, n_base)."""
         rings = self._rings
         stresses = self.stresses[self._rings]
         stiffness[rings] -= stresses @ (stresses.T @ stiffness[rings])
@@ -192,7 +192,7 @@ class GluedStructure:
         stiffness[np.ix_(rings, rings)] += self.tie * stresses @ stresses.T
 
     def _set_motions_apart(self) -> None:
-        """Remove what rounding makes rigid motions cost in S, in place."""
+        """Remove rounding errors of rigid motions from S, in place."""
         gauge = self.gauge
         stiffness = self.stiffness
         costs = stiffness @ gauge
@@ -303,7 +303,7 @@ class Condensation:
 
     @cached_property
     def shift(self) -> Array:
-        """Jumps by prescribed displacements that do not follow from those of the base.
+        """Jumps by prescribed displacements that do not follow from the base.
 
         Shape (n_moving, n_instants), scaled.
         """
@@ -341,7 +341,7 @@ class Condensation:
         return np.asarray((self._whole @ deformation - outer)[self._free])
 
     def rounding(self, deformation: Array, motion: Array, size: float) -> float:
-        """Largest force that rounding alone may leave out of balance, scaled.
+        """Largest unbalanced force by rounding alone, scaled.
 
         The forces inside a slender body are far larger than those that act on it.
         Springs and closing contacts depend on how far a body has moved, too: there
@@ -367,7 +367,7 @@ class Condensation:
 
     @cached_property
     def unit(self) -> Array:
-        """Stiffness of every jump with what is in series, shape (n_forces,), scaled."""
+        """Stiffness of every jump with its spring in series, (n_forces,), scaled."""
         unit = np.ones(len(self.all_rules.gap))
         springs = abs(self.ties) @ self.springs
         unit[self.moving] = springs / (1.0 + springs * self.rules.compliance)
@@ -441,7 +441,7 @@ def factored(matrix: sparse.csc_array) -> SuperLU:
 
 
 def _blocks(size: int) -> list[slice]:
-    """Slices of the columns, or rows, that are taken at a time."""
+    """Slices of columns, or rows, for work in blocks."""
     return [slice(first, first + BLOCK) for first in range(0, size, BLOCK)]
 
 

@@ -1,4 +1,4 @@
-"""The incremental reference where contacts open or two bodies rub on each other.
+"""Incremental reference for contacts that open, or between two bodies.
 
 The solution of every instant is exact. In time it is backward Euler on the jumps (Jean
 and Moreau), from rest at zero, as the laws of LATIN: friction opposes the increment of
@@ -29,7 +29,7 @@ MOST_JUMPS = 13_000
 
 
 class IncrementalContact:
-    """Incremental solver of any interfaces with friction, ready to march.
+    """Incremental solver for any interfaces with friction.
 
     Friction may have several solutions for a large mu, or no solution where contact
     alone holds a body. Where several exist one of them is found, and the instant is
@@ -73,7 +73,7 @@ class IncrementalContact:
         max_systems: int | None = None,
         stop: Callable[[], bool] | None = None,
     ) -> Reference:
-        """Solve instant by instant, up to the first that has no solution.
+        """Solve instant by instant, up to the first instant without solution.
 
         Friction depends on the path, so that nothing is known of the instants after it.
 
@@ -134,7 +134,7 @@ class IncrementalContact:
         return self._judged(instants, done, has_others, reached)
 
     def _may_hold(self, instant: int, stop: Callable[[], bool] | None) -> bool:
-        """Check that some contact forces balance the loads of an instant."""
+        """Check whether any contact forces balance the loads of an instant."""
         # One analysis of the whole path, when a first instant fails.
         if not self._is_analysed:
             self._collapse = collapse_of(self._problem, stop)
@@ -144,7 +144,7 @@ class IncrementalContact:
     def _judged(
         self, instants: Instants, done: Increment, has_others: Flags, reached: Flags
     ) -> Reference:
-        """The reference: all fields, and their distance from equilibrium and laws.
+        """The reference: all fields, and their violation of equilibrium and laws.
 
         Parameters
         ----------
@@ -203,7 +203,7 @@ class IncrementalContact:
     def _slip_and_opening(
         self, done: Increment, deformation: Array, rigid: Array, forces: Array
     ) -> tuple[Array, Array]:
-        """Slips per instant, and openings, with what is in series; scaled.
+        """Slip increments and openings, including springs in series; scaled.
 
         Both have the shape of the forces, (n_forces, n_instants); deformation and rigid
         motion have the shape (n_dofs, n_instants).

@@ -34,7 +34,7 @@ rounding."""
 
 
 class Fields(Protocol):
-    """Fields that are compared: those of an iterate, or of a reference; SI."""
+    """Fields of an iterate or of a reference for errors, SI."""
 
     @property
     def displacement(self) -> Array:
@@ -138,7 +138,7 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
 
 
 def _forces_of_motion(reference: Fields, problem: Problem) -> Array:
-    """Forces by prescribed displacements and overlaps, (n, n_instants), scaled.
+    """Forces due to prescribed displacements and overlaps, (n, n_instants), scaled.
 
     They are the reactions, or, where those are rounding, the forces inside elements
     without signs.
@@ -192,7 +192,7 @@ def held_instants(problem: Problem, contact_force: Array) -> Flags:
 
 
 def are_independent(columns: Array) -> bool:
-    """Check that columns of a matrix, (n, m), are independent."""
+    """Check whether the columns of a matrix, (n, m), are linearly independent."""
     squares = np.linalg.eigvalsh(columns.T @ columns)
     # Singular values are dearer, and tell columns apart that are nearly dependent.
     if squares[0] > SURE * squares[-1]:
@@ -276,7 +276,7 @@ def force_size(
     reaction: Array,
     max_ratio: float,
 ) -> float:
-    """Size that violations of forces are a share of, scaled.
+    """Reference size for violations of forces, scaled.
 
     It is the largest contact force, or a small share of loads and of forces inside
     elements, since rounding is a share of these; and at most a multiple of the forces

@@ -1,4 +1,4 @@
-"""Factors of square matrices, and of those that differ by a few rows and columns."""
+"""Factors of square matrices, and updates for a few rows and columns."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ DOUBTFUL = 1e-6
 
 
 class Factors:
-    """A square matrix, factored.
+    """LU factors of a square matrix.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Factors:
 
 
 class UpdatedFactors:
-    """A matrix whose rows and columns differ by few from those of a factored one.
+    """Factors of a matrix that differs by few rows and columns from a factored one.
 
     What is removed keeps its unknown, which has to vanish, and its equation gets a
     force of its own. With these and with what is added as further unknowns v, the

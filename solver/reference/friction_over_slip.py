@@ -1,4 +1,4 @@
-"""Friction of all jumps over their slips in one instant.
+"""Friction bounds of all jumps over their slips in one instant.
 
 The bound of a jump after the slip s in the instant is (r + mu f_n) g(s_0 + s), up to a
 cap before slip changes it; s_0 is the slip accumulated at the instant before.
@@ -37,7 +37,7 @@ class FrictionTangent(NamedTuple):
 
 
 class FrictionOverSlip:
-    """Friction of all jumps over their slips in one instant.
+    """Friction bounds of all jumps over their slips in one instant.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class FrictionOverSlip:
         self._fallen: Array | None = None
 
     def left_after(self, slip: Array) -> FrictionOverSlip:
-        """The same friction, which falls up to given slips and no further.
+        """The same friction, which falls up to given slips only.
 
         Where friction rises with slip it goes on to rise.
 
@@ -67,12 +67,12 @@ class FrictionOverSlip:
         return changed
 
     def accumulate(self, slip: Array) -> None:
-        """Add the slips of an instant, with their signs, shape (n,), scaled."""
+        """Accumulate the slips of an instant, with their signs, shape (n,), scaled."""
         self.accumulated_slip += np.abs(slip)
 
     @property
     def softens(self) -> bool:
-        """Friction falls with slip somewhere."""
+        """Check whether friction falls with slip anywhere."""
         return self._fallen is None and self._rules.softens
 
     def bound(self, bound: Array, force: Array, slip: Array) -> Array:
@@ -99,7 +99,7 @@ class FrictionOverSlip:
         return FrictionTangent(constant, coefficient, growth, is_capped)
 
     def segment(self, slip: Array) -> Indices:
-        """Number of the segment of the slip factor at each slip, both (n,)."""
+        """Index of the segment of the slip factor at each slip, both (n,)."""
         return self._rules.slip_factor.segment(self.accumulated_slip + np.abs(slip))
 
     def lowest_slope(self, first: Array, last: Array) -> Array:
@@ -126,7 +126,7 @@ class FrictionOverSlip:
         )
 
     def _slope(self, slip: Array) -> Array:
-        """Growth of the factor per further slip at slips >= 0, both (n,)."""
+        """Slope of the factor at slips >= 0, both (n,)."""
         slope = self._rules.slip_factor.slope(self.accumulated_slip + slip)
         if self._fallen is None:
             return slope

@@ -1,4 +1,4 @@
-"""Displacements by jumps, and displacements of the structure glued at its contacts.
+"""Displacements as functions of jumps and of motions glued at the contacts.
 
 Every jump is the displacement of one degree of freedom, or of one minus another. So
 jumps join degrees of freedom to trees, and the ground is a root. A displacement is u =
@@ -26,7 +26,7 @@ as zero."""
 
 
 def graph_of(jumps: sparse.csr_array) -> tuple[Indices, Indices]:
-    """The two points of every jump, the smaller first, shape (n_jumps,) each.
+    """Graph of the jumps: the two points of each, smaller first, (n_jumps,) each.
 
     The ground is the last point of all.
     """
@@ -39,7 +39,7 @@ def graph_of(jumps: sparse.csr_array) -> tuple[Indices, Indices]:
 
 
 def trees_of(edges: tuple[Indices, Indices], ground: int) -> tuple[int, Indices]:
-    """Number of trees that edges make of points, and the tree of every point.
+    """Number of trees formed by edges, and the tree of every point.
 
     Edges are the points at both ends, shape (n_edges,) each; trees have the shape
     (ground + 1,).
@@ -51,7 +51,7 @@ def trees_of(edges: tuple[Indices, Indices], ground: int) -> tuple[int, Indices]
 
 
 def _is_forest(jumps: sparse.csr_array) -> bool:
-    """Check that there is no ring, and so no jump that depends on others."""
+    """Check whether jumps form no ring, so that all are independent."""
     size, ground = jumps.shape
     trees, _ = trees_of(graph_of(jumps), ground)
     return bool(size + trees == ground + 1)
@@ -87,7 +87,7 @@ def from_jumps(jumps: sparse.csr_array) -> tuple[sparse.csr_array, sparse.csr_ar
 def _along_branches(
     jumps: sparse.csr_array, edges: tuple[Indices, Indices], roots: Indices
 ) -> sparse.csr_array:
-    """Displacements T: all points beyond a jump move, seen from the root of its tree.
+    """Displacements T: a jump moves all points beyond it, seen from the tree's root.
 
     Shape (n_dofs, n_jumps), of jumps (n_jumps, n_dofs), their points and the roots of
     all trees, (n_trees,).
@@ -113,7 +113,7 @@ def _along_branches(
 def _parents(
     edges: tuple[Indices, Indices], roots: Indices, ground: int
 ) -> tuple[Indices, Indices]:
-    """Points that are no roots, and the point before each, seen from its root, (n,)."""
+    """Points that are no roots, and the parent of each in its tree, (n,) both."""
     # Every root hangs on the ground, so that one search meets all points.
     others = roots[roots != ground]
     rows = np.concatenate([edges[0], others])
@@ -129,7 +129,7 @@ def _parents(
 def _branches(
     edges: tuple[Indices, Indices], points: Indices, parents: Indices, ground: int
 ) -> Indices:
-    """The first jump between each point and its parent, (n,) all."""
+    """First jump between each point and its parent, (n,) all."""
     # An edge has one number, by its two points, so that edges are found by a search.
     keys, first = np.unique(edges[0] * (ground + 1) + edges[1], return_index=True)
     wanted = np.minimum(points, parents) * (ground + 1) + np.maximum(points, parents)
@@ -137,7 +137,7 @@ def _branches(
 
 
 def self_stresses(jumps: sparse.csr_array, rigid: Flags) -> Array:
-    """Orthonormal forces that move nothing, shape (n_jumps, n_stresses).
+    """Orthonormal self-stresses: forces that move nothing, (n_jumps, n_stresses).
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def self_stresses(jumps: sparse.csr_array, rigid: Flags) -> Array:
 
 
 def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_array]:
-    """Base of the jumps: those from which the others follow.
+    """Base of the jumps: independent jumps that determine all others.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_
 
 
 def _spanning(jumps: sparse.csr_array, rigid: Flags) -> Indices:
-    """Jumps that join all points to trees, rigid ones preferred, (n_tree_jumps,)."""
+    """Jumps of spanning trees, preferably rigid ones, (n_tree_jumps,)."""
     first, last = graph_of(jumps)
     forest = scipy.cluster.hierarchy.DisjointSet(range(jumps.shape[1] + 1))
     chosen = []

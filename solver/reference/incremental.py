@@ -45,7 +45,7 @@ BALANCED = 1e-6
 
 
 def rubs_on_supports(problem: Problem) -> bool:
-    """Check that rods rub by known bounds, on one rigid support at every point."""
+    """Check whether all friction is of rods on rigid supports, with known bounds."""
     laws = problem.contacts.laws.values()
     if not laws or not problem.is_chain or not all(law.is_plain for law in laws):
         return False
@@ -85,7 +85,7 @@ class IncrementalRod:
         max_systems: int | None,
         stop: Callable[[], bool] | None,
     ) -> Reference:
-        """Solve by the general solver, which also follows fast softening."""
+        """Solve by the general solver, which can follow fast softening."""
         if self._general is None:
             self._general = IncrementalContact(self._problem, stop)
         dearer = 1 + len(self._dofs) // DEARER
@@ -144,7 +144,7 @@ class IncrementalRod:
     def _minimise(
         self, instant: int, force: Array, status: Array, accumulated_slip: Array
     ) -> Minimum | None:
-        """Minimise phi over one instant; None where there is no certain minimum.
+        """Minimise phi over one instant; None without a certain minimum.
 
         By the load, a guess of the statuses, and the slip accumulated before, shape
         (n_dofs,) each.
@@ -173,7 +173,7 @@ class IncrementalRod:
     def _with_changing_bound(
         self, first: Array, force: Array, status: Array, accumulated_slip: Array
     ) -> Minimum | None:
-        """Minimum that certainly continues the instant before; None without certainty.
+        """Minimum that continues the instant before; None if that is uncertain.
 
         How far friction changes within the instant is found by trial. The minimum is
         sure if the structure is stable where points slip, however far they have
@@ -215,7 +215,7 @@ class IncrementalRod:
     def _is_stable(
         self, first: Array, slips: Array, begin: Array, reached: Array
     ) -> bool:
-        """Check that the structure is stable under the steepest fall of friction.
+        """Check whether the structure is stable under the steepest fall of friction.
 
         All arrays have the shape (n_dofs,).
 
@@ -239,7 +239,7 @@ class IncrementalRod:
         return True
 
     def _gathered(self, minima: list[Minimum]) -> Reference:
-        """Reference of the minima of the first instants, after which nothing moves."""
+        """Reference from the minima of the first instants; afterwards nothing moves."""
         problem = self._problem
         dofs = self._dofs
         # An instant is a row here: each is filled as a whole.
@@ -276,7 +276,7 @@ Incremental = IncrementalRod | IncrementalContact
 
 
 def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
-    """Solve a problem instant by instant, by the solver that its interfaces call for.
+    """Solve a problem instant by instant, with the solver for its interfaces.
 
     `stop` is asked before each linear system, or each instant where these are small;
     `Interrupted` is raised as soon as it returns True.
@@ -289,7 +289,7 @@ def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Re
 def incremental_solver(
     problem: Problem, stop: Callable[[], bool] | None = None
 ) -> Incremental:
-    """Prepare the solver that the interfaces of a problem call for.
+    """Prepare the solver for the interfaces of a problem.
 
     Raises
     ------

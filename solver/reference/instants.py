@@ -1,4 +1,4 @@
-"""Frictional contact through time, each instant from the states of the one before.
+"""Frictional contact over time: each instant starts from the states before.
 
 Where friction softens an instant may have several solutions. The solution that
 continues the instant before is followed while the load of the instant grows, in steps
@@ -41,7 +41,7 @@ AT_REST = 1e-9
 
 
 class Instants:
-    """Jumps and forces of a condensed structure, one instant after the other.
+    """Jumps and forces of a condensed structure, instant by instant.
 
     Attributes
     ----------
@@ -116,7 +116,7 @@ class Instants:
         self._is_at_rest = ~has_acted & bool(np.all(rules.gap[rules.normal] >= 0.0))
 
     def __call__(self, instant: int) -> Increment:
-        """Increments of an instant, with the slip, or opening, of each jump.
+        """Solve an instant; return its increments, and slip or opening of each jump.
 
         The forces that move nothing are the multipliers that keep dependent jumps
         together (method of multipliers: Bertsekas, Constrained Optimization, 1982, ch.
@@ -145,7 +145,7 @@ class Instants:
         return step
 
     def _nothing(self) -> Increment:
-        """The step of an instant at which nothing moves."""
+        """Increments of an instant at which nothing moves."""
         return Increment(
             jump=np.zeros_like(self._force),
             force=np.zeros_like(self._force),
@@ -154,7 +154,7 @@ class Instants:
         )
 
     def _move(self, step: Increment) -> None:
-        """Add the step of an instant, with the slip of each jump, to all before."""
+        """Add the increments of an instant, with the slips, to the totals."""
         rules = self._rules
         self._force = step.force
         self._opening += step.jump
@@ -166,11 +166,11 @@ class Instants:
         self._intact[rules.bonds[opened]] = 0.0
 
     def _bound(self, instant: int) -> Array:
-        """Friction force that needs no normal force, (n,): none of broken bonds."""
+        """Friction force without normal force, (n,): zero for broken bonds."""
         return self._rules.bound_at(instant) * self._intact
 
     def _together(self, right_sides: RightSides, instant: int) -> Increment:
-        """Solve an instant until jumps that depend on each other are together."""
+        """Solve an instant such that dependent jumps are consistent."""
         done = self.system.solutions
         from_guess = self._starts.from_guess
         for _ in range(PASSES):
@@ -189,13 +189,13 @@ class Instants:
         return step
 
     def _stuck(self, right_sides: RightSides) -> Increment:
-        """The step in which all contacts stay where they are."""
+        """Increments if all contacts keep their positions."""
         held = right_sides.held + self._rules.normal * self._opening
         states = np.full_like(self._states, HELD)
         return self.system(states, replace(right_sides, held=held))
 
     def _pull_together(self, step: Increment, instant: int) -> Array:
-        """Forces by which dependent jumps that are apart tie each other, (n_base,)."""
+        """Forces that bring inconsistent dependent jumps together, (n_base,)."""
         condensed = self._condensed
         stresses = condensed.stresses
         given = condensed.given[condensed.moving[condensed.base], instant]
@@ -204,7 +204,7 @@ class Instants:
         return np.asarray(condensed.tie * (stresses @ (stresses.T @ moved)))
 
     def _solved(self, right_sides: RightSides, instant: int) -> InstantSolution | None:
-        """Find states and step of an instant; None where there is no solution."""
+        """Find states and increments of an instant; None without a solution."""
         rules = self._rules
         newton = self._newton
         # A body that falls, rolls or slides a long way touches elsewhere than one
@@ -241,7 +241,7 @@ class Instants:
         known: list[States],
         instant: int,
     ) -> InstantSolution | None:
-        """Follow the solution of the instant before; where it is lost, seek another.
+        """Follow the solution of the instant before; if it is lost, seek another.
 
         `known` are states to try, shape (n,) each.
         """
@@ -273,7 +273,7 @@ class Instants:
         right_sides: tuple[RightSides, RightSides],
         known: list[States],
     ) -> tuple[InstantSolution, float]:
-        """Follow a solution from some right-hand sides to others, in parts.
+        """Follow a solution from some right-hand sides to others in steps.
 
         Parameters
         ----------
@@ -314,7 +314,7 @@ class Instants:
         right_sides: tuple[RightSides, RightSides],
         known: list[States],
     ) -> InstantSolution | None:
-        """Seek a stable solution beyond one that is lost.
+        """Seek a stable solution beyond the end of a branch.
 
         With the friction that slip so far has left the next slip is larger, and so on
         up to the nearest solution; Newton's method is tried once the same contacts slip
@@ -389,6 +389,6 @@ class Instants:
 
 
 def _are_equal(slip: Array, other: Array) -> bool:
-    """Check that slips, (n,), are others up to the digits that a solution has."""
+    """Check whether slips, (n,), are equal up to the accuracy of a solution."""
     size = np.abs(other).max(initial=0.0)
     return bool(np.abs(slip - other).max(initial=0.0) <= AT_REST * size)

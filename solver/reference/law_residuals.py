@@ -1,4 +1,4 @@
-"""Residuals of all laws: violations of balance and of the laws of contact by fields.
+"""Residuals of all laws: violations of equilibrium and of the laws of contact.
 
 Nothing here depends on how the fields were found, nor on the data that incremental
 solvers make of a problem: forces inside are those of each substructure, and the law of
@@ -35,7 +35,7 @@ KNOWN = Contact, Dirichlet, Neumann, Perfect
 
 @dataclass(frozen=True)
 class LawResiduals:
-    """Largest violation of every kind of law over all places and instants.
+    """Largest violation of every kind of law over all points and instants.
 
     Forces are a share of `force_size`; lengths a share of the largest jump, or of
     `ROUNDED` of the displacement or of the softest spring's length where that is more,
@@ -65,7 +65,7 @@ class LawResiduals:
 
     @property
     def largest(self) -> float:
-        """Largest of all violations; NaN where one is."""
+        """Largest of all violations; NaN if any is NaN."""
         return float(np.max(astuple(self)))
 
     @property
@@ -139,7 +139,7 @@ def _missing_force(
     force: Array,
     held: Indices,
 ) -> tuple[Array, float]:
-    """Force that balance lacks, (n_dofs, n_instants), and the size of forces, scaled.
+    """Unbalanced force, (n_dofs, n_instants), and size of the forces; scaled.
 
     `displacement` and `deformation` have shape (n_dofs, n_instants), `force`
     (n_forces, n_instants); at the degrees of freedom `held`, (n_held,), the support
@@ -169,7 +169,7 @@ def _stiffest(problem: Problem) -> float:
 
 
 def _check_known(problem: Problem) -> None:
-    """Refuse interfaces whose law is unknown: they would count as obeyed."""
+    """Refuse interfaces of unknown laws, whose violation cannot be measured."""
     for name, law in problem.interfaces.items():
         if name in problem.user_laws or not isinstance(law, KNOWN):
             kind = type(law).__name__
@@ -205,7 +205,7 @@ class _InterfaceFields:
     is_prescribed: Flags
 
     def across(self, length_size: float, force_size: float) -> Array:
-        """Violation of Signorini's law where no jump is prescribed, (n, n_instants)."""
+        """Violation of Signorini's law at points of unknown jump, (n, n_instants)."""
         if self.opening is None or self.pressing is None:
             return np.zeros(0)
         pressing = _share(self.pressing, force_size)
@@ -215,7 +215,7 @@ class _InterfaceFields:
         return np.asarray(violation[~self.is_prescribed])
 
     def along(self, length_size: float, force_size: float) -> Array:
-        """Violation of Coulomb's law where pressing is determinate, (n, n_instants)."""
+        """Violation of Coulomb's law at points of known pressure, (n, n_instants)."""
         if_kept = self._violation(OPENED * length_size, length_size, force_size)
         if_broken = self._violation(0.0, length_size, force_size)
         # Whether what may be rounding opens a bond nobody can tell: either may count,
@@ -307,7 +307,7 @@ def _interface_fields(
 def _with_spring(
     law: Contact, jump: Array, force: Array, compliance: Array | None
 ) -> Array:
-    """Jumps plus the length of springs in series, (n_points, n_instants), scaled.
+    """Jumps plus the elongation of springs in series, (n_points, n_instants), scaled.
 
     Jumps and forces have that shape; compliances, (n_pairs,), are None without springs.
     """
@@ -327,7 +327,7 @@ def _jump(
 
 
 def _is_held(problem: Problem, component: Component, held: Indices) -> Flags:
-    """Flags of pairs whose jump is prescribed, (n_pairs,), by held dofs, (n_held,)."""
+    """Mask of pairs with prescribed jump, (n_pairs,), from held dofs, (n_held,)."""
     given = [np.isin(problem.row_dofs[side], held) for side in component.sides]
     return np.asarray(np.logical_and.reduce(given))
 
@@ -361,7 +361,7 @@ def _outer_force(problem: Problem) -> Array:
 def _inner_force(
     problem: Problem, displacement: Array, deformation: Array
 ) -> tuple[Array, Array]:
-    """Forces that strain all substructures, and sums of their parts without signs.
+    """Elastic forces of all substructures, and sums of the sizes of their terms.
 
     Both have the shape (n_dofs, n_instants).
     """
@@ -376,7 +376,7 @@ def _inner_force(
 
 
 def _deformation(problem: Problem, displacement: Array) -> Array:
-    """Displacement less the rigid motions of bodies, (n_dofs, n_instants), scaled.
+    """Displacement without rigid motions of bodies, (n_dofs, n_instants), scaled.
 
     These strain nothing, but the stiffness of a slender body makes forces of their
     rounding: of bricks 228 times as long as high 3e-8 of what acted (measured).
@@ -421,7 +421,7 @@ def _balance_of_parts(
 def _glued(
     problem: Problem, rows: RowFields, length_size: float, force_size: float
 ) -> float:
-    """Largest gap of both sides of all cuts, or sum of their forces, as a share."""
+    """Largest gap, or largest sum of the forces on both sides, of cuts, as a share."""
     largest = 0.0
     for law in problem.interfaces.values():
         if isinstance(law, Perfect):
@@ -433,7 +433,7 @@ def _glued(
 
 
 def _share(value: Array | float, size: float) -> Any:
-    """A value as a share of a size; as it is where that is zero."""
+    """A value over a size; the value itself where the size is zero."""
     if size > 0.0:
         return value / size
     return value

@@ -1,4 +1,4 @@
-"""Limit analysis: from when on no contact forces balance the loads.
+"""Limit analysis: the loads at which no contact forces are in equilibrium.
 
 An equilibrium of the discrete problem, whatever its elasticity, is one of nodal contact
 forces with N >= 0 and |T| <= r + mu N, times the strongest factor that slip may make,
@@ -50,7 +50,7 @@ INFEASIBLE = 2
 
 @dataclass(frozen=True, eq=False)
 class Collapse:
-    """Collapse: the loads go beyond all that contact can balance.
+    """Collapse: point of the load path beyond which contact cannot balance the loads.
 
     Attributes
     ----------
@@ -118,7 +118,7 @@ class _Program:
 
     @property
     def _capped(self) -> Indices:
-        """Places of the tangential jumps with a cap, among these, shape (n_capped,)."""
+        """Indices of the tangential jumps with a cap among these, shape (n_capped,)."""
         return np.flatnonzero(np.isfinite(self._rules.cap[self._rubs]))
 
     def _friction_limits(self) -> sparse.sparray:
@@ -160,7 +160,7 @@ class _Program:
         return program
 
     def holds(self, instant: int, load: Array, stop: Callable[[], bool] | None) -> bool:
-        """Check whether contact balances all of a load, (n_motions,), without doubt.
+        """Check whether contact certainly balances a load, (n_motions,).
 
         Raises
         ------
@@ -181,7 +181,7 @@ class _Program:
 def collapse_of(
     problem: Problem, stop: Callable[[], bool] | None = None
 ) -> Collapse | None:
-    """Collapse of a structure on the path of its loads; None if there is none.
+    """Collapse of a structure on its load path; None if it carries all loads.
 
     `stop` is asked before each linear program, one an instant.
 
@@ -222,7 +222,7 @@ def collapse_of(
 
 
 def _ends_of_line(problem: Problem, loads: Array) -> list[int]:
-    """Instants at both ends of the line on which all loads lie; none for other loads.
+    """Instants of extreme loads if all loads are proportional; else none.
 
     Loads that contact balances are a convex set: what is between two of them is one,
     too. The loads have shape (n_instants, n_motions).
@@ -277,7 +277,7 @@ def _collapse_at(
     share: float,
     balanced: scipy.optimize.OptimizeResult,
 ) -> Collapse:
-    """Collapse at a share of the step to an instant; its mechanism is the dual."""
+    """Collapse at a share of the step to an instant; the mechanism is the dual."""
     times = problem.instants
     first = times[max(instant - 1, 0)]
     time = float(first + share * (times[instant] - first))
@@ -292,7 +292,7 @@ def _collapse_at(
 
 
 def _motion_of(problem: Problem, mechanism: Array) -> Motion:
-    """Kind of a mechanism, shape (n_dofs,), by how far its bodies turn."""
+    """Kind of a mechanism, shape (n_dofs,), by the rotation of its bodies."""
     assert problem.inside is not None
     turns = []
     for part in problem.substructures:

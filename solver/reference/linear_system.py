@@ -59,7 +59,7 @@ class Solved:
 
 
 class LinearSystem:
-    """The linear system of given states; the last factorisation is kept.
+    """The linear system for given states, which reuses its last factors.
 
     The stiffness and gauge are those of the condensed structure, or others where
     springs hold it. Rows of the system are the jumps of the base that are free or have
@@ -121,7 +121,7 @@ class LinearSystem:
         self.has_negative_determinant = False
 
     def _forces_of_unknowns(self) -> Array:
-        """Forces of all jumps by those of the base and by forces beyond it, (n, n)."""
+        """Matrix from forces of base and of dependent jumps to all forces, (n, n)."""
         if self._ties is None:
             return self._stiffness
         n_base = len(self._base)
@@ -172,7 +172,7 @@ class LinearSystem:
         return self._apart(solved, right_sides)
 
     def _apart(self, solved: Solved, right_sides: RightSides) -> Solved:
-        """Set rigid motions apart, and refine the solution where that is needed."""
+        """Separate rigid motions, and refine the solution where needed."""
         if not self._gauge.size:
             return self._refined(solved, right_sides)
         motion = self._gauge.T @ solved.strained
@@ -239,7 +239,7 @@ class LinearSystem:
         return np.asarray(missing)
 
     def _set_carried(self, solved: Solved, right_sides: RightSides) -> None:
-        """Set the forces of the rows by their friction law, and note the difference."""
+        """Set the forces of rows by their friction law, and store the difference."""
         rows = self._rows
         force = solved.force
         carried = -self._direction * right_sides.bound[rows]
@@ -255,7 +255,7 @@ class LinearSystem:
     def _forces(
         self, unknown: Array, places: Indices, rows: Array | None = None
     ) -> Array:
-        """Forces of all jumps that the unknowns at some places make, (n,).
+        """Forces of all jumps due to some of the unknowns, (n,).
 
         Most held jumps do not move, and few jumps slip at a time: so S, which is
         symmetric, is read at the rows of the others alone.
@@ -280,7 +280,7 @@ class LinearSystem:
         return np.asarray(rows.T @ unknown[places])
 
     def _ends(self, solved: Solved, held: Array) -> Array:
-        """Jumps with what is in series, (n,): those that are held to the last bit."""
+        """Jumps with springs in series, (n,); held jumps are exact."""
         ends = solved.unknown[: len(self._base)].copy()
         if self._is_plain:
             return ends
@@ -290,23 +290,23 @@ class LinearSystem:
         return ends
 
     def _jump(self, base: Array) -> Array:
-        """Jumps, (n,), by those of the base, (n_base,)."""
+        """All jumps, (n,), from those of the base, (n_base,)."""
         if self._ties is None:
             return base
         return np.asarray(self._ties @ base)
 
     def on_base(self, force: Array) -> Array:
-        """Forces on the base, (n_base,), that equal forces of all jumps, (n,)."""
+        """Forces on the base, (n_base,), equivalent to forces of all jumps, (n,)."""
         if self._ties is None:
             return force
         return np.asarray(self._ties.T @ force)
 
-    def inside(self, strained: Array) -> float:
-        """Largest force that y (n_base,) of a single jump takes, scaled."""
+    def largest_force(self, strained: Array) -> float:
+        """Largest force due to any single jump of y, (n_base,), scaled."""
         return float((self._alone * np.abs(strained)).max())
 
     def blur(self, motion: Array) -> Array:
-        """Force that rounding of a rigid motion may make at every jump, (n,), scaled.
+        """Force at every jump by rounding of a rigid motion, (n,), scaled.
 
         Shape (1,) where there is none. The motion has the shape (n_motions,).
         """
@@ -334,7 +334,7 @@ class LinearSystem:
         return factors
 
     def _updated(self, states: States) -> UpdatedFactors | None:
-        """Update the last factors to the states, (n,); None where that does not pay.
+        """Update the last factors to the states, (n,); None where that is slower.
 
         What comes and goes are jumps that are free or held now, and those that slip the
         other way. Where something is in series, equations change in other ways, too.
@@ -390,7 +390,7 @@ class LinearSystem:
         self._lengthening = 1.0 + self._growth_of_rows * self._compliance[rows]
 
     def _with_friction(self) -> Array:
-        """Force of each row less its friction by all unknowns, (n_rows, n_rows)."""
+        """Matrix of forces of rows less friction by all unknowns, (n_rows, n_rows)."""
         matrix = self._less_friction(self._rows, self._drag, self._unknowns)
         if self._grows:
             self._jumps_of_rows = self._jumps_of(self._rows)
@@ -399,7 +399,7 @@ class LinearSystem:
         return matrix
 
     def _less_friction(self, rows: Indices, drag: Array, unknowns: Indices) -> Array:
-        """Forces of rows less what their normal forces carry, by some unknowns.
+        """Matrix of forces of rows less friction by some unknowns.
 
         Shape (n_rows, n_unknowns); `drag` is mu with the direction of friction,
         (n_rows,). Where friction grows with slip, the rows are all of the system.
@@ -417,7 +417,7 @@ class LinearSystem:
         return np.asarray(matrix)
 
     def _rows_of_sprung(self, forces: Array) -> Array:
-        """Equations of held jumps with something in series: both end at a given length.
+        """Equations of held jumps with springs in series: both end at a given length.
 
         Parameters
         ----------
@@ -440,7 +440,7 @@ class LinearSystem:
         return np.asarray(scale * equations)
 
     def _jumps_of(self, numbers: Indices) -> Array:
-        """Jumps as a matrix on those of the base, (n_numbers, n_base)."""
+        """Matrix from jumps of the base to some jumps, (n_numbers, n_base)."""
         if self._ties is not None:
             return np.asarray(self._ties[numbers])
         jumps = np.zeros((len(numbers), len(self._base)))

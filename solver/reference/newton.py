@@ -64,7 +64,7 @@ _OPEN = np.int8(OPEN)
 
 
 class Newton:
-    """Newton's method from one solution to another.
+    """Newton's method for the states of an instant, from a solution of another.
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ class Newton:
         self.largest_load = float(np.abs(condensed.load).max(initial=0.0))
 
     def with_friction_left(self, slip: Array) -> Newton:
-        """The same method, with the friction that is left after slips, (n,), scaled."""
+        """The same method, with the friction after slips, (n,), scaled."""
         changed = copy(self)
         changed.friction_law = self.friction_law.left_after(slip)
         return changed
@@ -128,7 +128,7 @@ class Newton:
     def approach(
         self, at: InstantSolution, right_sides: RightSides
     ) -> Iterator[InstantSolution]:
-        """Yield solutions with softer and softer springs, whose states repeat.
+        """Yield solutions with ever softer springs at the jumps.
 
         The first is sought from a solution. Nothing is yielded where there are too many
         jumps, and none twice on one piece of the laws, from where Newton's steps go the
@@ -163,7 +163,7 @@ class Newton:
                 return
 
     def _piece(self, states: States, slip: Array) -> bytes:
-        """Key of a piece of the laws, on which they are smooth, at states and slips.
+        """Key of the smooth piece of the laws at states and slips.
 
         Both have the shape (n,).
         """
@@ -182,13 +182,13 @@ class Newton:
     def seek_from(
         self, at: InstantSolution, right_sides: RightSides
     ) -> InstantSolution | None:
-        """Seek a solution, stable or not, from fields that need not be one."""
+        """Seek a solution, stable or not, from fields that are no solution."""
         return self.seek(self.system, at, right_sides)
 
     def seek(
         self, system: LinearSystem, guess: InstantSolution, right_sides: RightSides
     ) -> InstantSolution | None:
-        """Seek states and slips from those of a guess; None where the states cycle.
+        """Seek states and slips from those of a guess; None if the states cycle.
 
         A front of slip, like that along a belt, may move by a jump a step. States that
         leave bodies free mostly wander: springs hold these at less cost.
@@ -239,7 +239,7 @@ class Newton:
         right_sides: RightSides,
         slack: float,
     ) -> bool:
-        """Check that forces balance and friction obeys its law, not only the tangent.
+        """Check whether forces balance, and friction obeys its law, not the tangent.
 
         Sticking points may not carry more than the cap either, as the cap that the
         states were corrected by was that of the step before. The slack is a force that
@@ -260,7 +260,7 @@ class Newton:
         return bool(violation.max(initial=0.0) <= FRICTION_TOLERANCE * largest)
 
     def _rounding(self, states: States, step: Increment) -> tuple[float, Array]:
-        """Forces that rounding may make, scaled.
+        """Bounds on forces by rounding, scaled.
 
         A held jump is the deformation less the rigid motion, whose rounding makes
         forces at every jump. A deformation that is undone leaves the rounding of both
@@ -270,7 +270,9 @@ class Newton:
         -------
         The force at any jump; and at a jump that is not held, shape (n,) or (1,).
         """
-        inside = self.system.inside(np.abs(self.strained) + np.abs(step.strained))
+        inside = self.system.largest_force(
+            np.abs(self.strained) + np.abs(step.strained)
+        )
         slack = ROUNDING * (inside + self.largest_load)
         blur = self.system.blur(step.motion)
         is_stiff = (states == HELD) & (self._rules.compliance == 0.0)
@@ -284,7 +286,7 @@ class Newton:
         friction: Array,
         rounding: tuple[float, Array],
     ) -> States:
-        """States that follow from jumps and forces; rounding changes none of them.
+        """States that follow from jumps and forces, unless a change may be rounding.
 
         `friction` is the coefficient mu of every jump, shape (n,), and `rounding` what
         `_rounding` returns.
@@ -320,7 +322,7 @@ class Newton:
 
 
 def _cycles(pieces: Sequence[bytes], piece: bytes, *, is_nonlinear: bool) -> bool:
-    """Check whether steps that were on some pieces of the laws cycle on the next.
+    """Check whether Newton's steps cycle between pieces of the laws.
 
     On one piece a linear problem comes to rest in one step, and a nonlinear one may
     take several.
@@ -331,10 +333,10 @@ def _cycles(pieces: Sequence[bytes], piece: bytes, *, is_nonlinear: bool) -> boo
 
 
 def _slip_of_states(states: States, slip: Array) -> Array:
-    """Slips in the directions of their states, without signs, shape (n,), scaled."""
+    """Sizes of slips in the directions of their states, shape (n,), scaled."""
     return np.where(np.abs(states) == 1, np.maximum(states * slip, 0.0), 0.0)
 
 
 def _beyond(pull: Array, limit: Array) -> States:
-    """Signs of pulls where they are beyond their limit, else 0; all of shape (n,)."""
+    """Signs of pulls beyond their limit, else 0; all of shape (n,)."""
     return (pull > limit).view(np.int8) - (pull < -limit).view(np.int8)

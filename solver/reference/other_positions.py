@@ -1,4 +1,4 @@
-"""Other positions of bodies under the same contact forces.
+"""Other positions of bodies in equilibrium under the same contact forces.
 
 Bodies that contact alone holds may move as rigid ones, which costs no elastic force, so
 that the same contact forces balance the loads. These obey all laws there, too, if
@@ -32,7 +32,7 @@ INSIDE = 0.5
 def other_positions(
     problem: Problem, displacement: Array, force: Array
 ) -> dict[int, Array]:
-    """Displacement of another solution at instants where one is known, (n_dofs,), m.
+    """Displacement of another solution at some instants of a known one, (n_dofs,), m.
 
     Up to the instant before, both are the same. None is known where there is none, nor
     where slip changes friction, contacts give way or were bonded, or where there are
@@ -72,14 +72,18 @@ def other_positions(
         key = pattern.tobytes()
         if key not in known:
             known[key] = motions @ _free_motions(moved[pattern])
-        way = _way(known[key], all_jumps @ known[key], room[..., instant], largest)
+        way = _free_direction(
+            known[key], all_jumps @ known[key], room[..., instant], largest
+        )
         if way is not None:
             found[instant] = displacement[:, instant] + scale * way
     return found
 
 
-def _way(free: Array, jumped: Array, room: Array, largest: float) -> Array | None:
-    """First of some free motions that has room, scaled, (n_dofs,); None without any.
+def _free_direction(
+    free: Array, jumped: Array, room: Array, largest: float
+) -> Array | None:
+    """First free motion that contacts allow, scaled, (n_dofs,); None without any.
 
     Parameters
     ----------
@@ -92,14 +96,14 @@ def _way(free: Array, jumped: Array, room: Array, largest: float) -> Array | Non
     """
     for motion, jump in zip(free.T, jumped.T, strict=True):
         longest = largest / float(np.abs(motion).max())
-        length = INSIDE * min(_step(jump, room), longest, key=abs)
+        length = INSIDE * min(_longest_step(jump, room), longest, key=abs)
         if abs(length) > FELT * longest:
             return np.asarray(length * motion)
     return None
 
 
 def _contacts(rules: Rules, jumped: Array, force: Array) -> tuple[Flags, Array]:
-    """Jumps that hinder motions, (n, n_instants), and the room of jumps.
+    """Jumps that hinder motions, (n, n_instants), and the gaps that limit jumps.
 
     Jumps and forces are scaled, (n, n_instants). The room, (2, n, n_instants), is how
     far a jump may go down and up; motions that nothing hinders leave the others alone.
@@ -120,7 +124,7 @@ def _contacts(rules: Rules, jumped: Array, force: Array) -> tuple[Flags, Array]:
 
 
 def _free_motions(moved: Array) -> Array:
-    """Motions that some jumps do not hinder, (n_motions, n_free).
+    """Basis of motions without some jumps, (n_motions, n_free).
 
     `moved` are the jumps that motions make, (n, n_motions).
     """
@@ -131,8 +135,8 @@ def _free_motions(moved: Array) -> Array:
     return np.asarray(ways[count:].T)
 
 
-def _step(jump: Array, room: Array) -> float:
-    """Longest step along a motion for which jumps have room; back it is negative.
+def _longest_step(jump: Array, room: Array) -> float:
+    """Longest step along a motion that the gaps allow; negative if backwards.
 
     The motion makes a jump each, (n,); they have room down and up, (2, n).
     """

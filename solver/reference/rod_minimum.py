@@ -35,7 +35,7 @@ keeps its digits."""
 
 
 class Tridiagonal:
-    """A symmetric tridiagonal matrix, solved with different degrees of freedom held.
+    """A symmetric tridiagonal matrix, solved with some degrees of freedom held.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Tridiagonal:
         self.largest_row = float(sums.max())
 
     def stiffened(self, slipping: Array) -> Self:
-        """The matrix with stiffness (n,) added where degrees of freedom are not held.
+        """The matrix with stiffness, (n,), added at free degrees of freedom.
 
         Where friction softens, the stiffness is negative.
         """
@@ -78,7 +78,7 @@ class Tridiagonal:
         return force + self._slipping * field
 
     def solve_kept(self, keep: Array, force: Array) -> Array:
-        """Solve on the degrees of freedom where `keep` is 1, and give 0 elsewhere.
+        """Solve on the degrees of freedom where `keep` is 1; the others are 0.
 
         Parameters
         ----------
@@ -109,7 +109,7 @@ class Tridiagonal:
         return np.asarray(solved)
 
     def part(self, kept: slice) -> Self:
-        """The matrix of degrees of freedom that follow each other."""
+        """The matrix of consecutive degrees of freedom."""
         inside = slice(kept.start, kept.stop - 1)
         part = type(self)(self.diagonal[kept], self.beside[inside])
         if self._slipping is None:
@@ -155,7 +155,7 @@ class Minimum:
 
 
 class _Fields(NamedTuple):
-    """Fields that belong to statuses.
+    """Fields for given statuses.
 
     Attributes
     ----------
@@ -212,7 +212,7 @@ class Search:
             self._loose &= pulled <= HELD * stiffness.largest_row
 
     def __call__(self, force: Array, status: Array) -> Minimum:
-        """Minimum, sought from a guess of the statuses.
+        """Find the minimum from a guess of the statuses.
 
         Parameters
         ----------
@@ -262,7 +262,7 @@ class Search:
         return status, changing, None
 
     def _mend_rod(self, rod: int, force: Array, status: Array) -> None:
-        """Replace the statuses of a rod, in those of all, by those of its minimum.
+        """Replace the statuses of a rod by those of its minimum.
 
         Forces and statuses have the shape (n_dofs,).
         """
@@ -274,7 +274,7 @@ class Search:
         self.solutions += -(-added // len(force))
 
     def _of_rod(self, rod: int) -> tuple[slice, Search]:
-        """Degrees of freedom of a rod, and the search on it alone."""
+        """Degrees of freedom of a rod, and the search restricted to the rod."""
         if rod not in self._parts:
             first, last = np.searchsorted(self._rod, [rod, rod + 1])
             dofs = slice(first, last)
@@ -285,7 +285,7 @@ class Search:
         return self._parts[rod]
 
     def _mended(self, force: Array, status: Array) -> Array:
-        """Statuses of a rod, (n_dofs,), where Newton's method does not find them.
+        """Statuses of a rod, (n_dofs,), for which Newton's method fails.
 
         The guess of the statuses, and the load, have the same shape.
         """
@@ -303,7 +303,7 @@ class Search:
         return self._descend(force, status)
 
     def _descend(self, force: Array, status: Array) -> Array:
-        """Minimise phi of a rod by an active-set method; every step of it lowers phi.
+        """Minimise phi of a rod by an active-set method; every step lowers phi.
 
         A step ends where a first point stops, which then sticks. At a minimum over the
         slipping points the point that is pulled farthest beyond its bound is released,
@@ -349,7 +349,7 @@ class Search:
                 return status
 
     def _moving(self, status: Array, increment: Array) -> tuple[Array, Array]:
-        """Statuses and increments (n_dofs,) where points that do not slip on stick."""
+        """Statuses and increments, (n_dofs,): points that would turn back stick."""
         status = status * (status * increment > 0.0)
         increment *= self._free + np.abs(status)
         return status, increment
@@ -377,7 +377,7 @@ class Search:
 
     @cached_property
     def _coarser(self) -> tuple[Search, Indices]:
-        """The search on the rod with its points tied in pairs, all of them movable.
+        """The search on the rod with points tied in pairs.
 
         With the number of the pair of each point, shape (n_dofs,).
         """

@@ -1,4 +1,4 @@
-"""Rules that jumps of the displacement obey at one instant, and their states.
+"""Contact rules of the jumps at one instant, and the states of the jumps.
 
 A normal jump is HELD at the gap, or OPEN without force. A tangential one is HELD where
 it was, slips with s = -1 or +1 against the friction force -s (r + mu f_n), or is OPEN:
@@ -42,7 +42,7 @@ OF_JUMPS = (
 
 @dataclass(frozen=True, eq=False)
 class Rules:
-    """Rules of the jumps, stacked as `Problem.sum_of_contact` says.
+    """Contact rules of all jumps, in the order of `Problem.sum_of_contact`.
 
     Attributes
     ----------
@@ -80,21 +80,21 @@ class Rules:
 
     @property
     def is_frictionless(self) -> Flags:
-        """Tangential jumps without friction, shape (n,)."""
+        """Mask of tangential jumps without friction, shape (n,)."""
         return np.asarray(~self.normal & (self.friction == 0.0) & ~self.bounded)
 
     @cached_property
     def bounded(self) -> Flags:
-        """Jumps with friction that at some instant needs no normal force, (n,)."""
+        """Mask of jumps with friction without a normal force at some instant, (n,)."""
         return np.asarray(self.bound.any(axis=1))
 
     @cached_property
     def bonds(self) -> Indices:
-        """Places of jumps whose bound ends where their contact opens, (n_bonds,)."""
+        """Indices of jumps whose bound ends when their contact opens, (n_bonds,)."""
         return np.flatnonzero(self.bounded & self.normal[self.partner])
 
     def kept(self, moving: Indices) -> Rules:
-        """Rules of the unknown jumps, by their places, shape (n_moving,).
+        """Rules of the unknown jumps, by their indices, shape (n_moving,).
 
         Friction whose normal force is not among theirs has no coefficient.
         """
@@ -111,27 +111,27 @@ class Rules:
 
     @cached_property
     def changes_with_slip(self) -> bool:
-        """Friction changes with slip somewhere."""
+        """Check whether friction changes with slip anywhere."""
         return set(self.slip_factor.factors) != {1.0}
 
     @cached_property
     def softens(self) -> bool:
-        """Friction falls with slip somewhere."""
+        """Check whether friction falls with slip anywhere."""
         return bool(self.slip_factor.slopes.min() < 0.0)
 
     @cached_property
     def is_nonlinear(self) -> bool:
-        """Friction is not linear in pressing force and slip."""
+        """Check whether friction is nonlinear in pressing force or slip."""
         return self.changes_with_slip or bool(np.isfinite(self.cap).any())
 
     def bound_at(self, instant: int) -> Array:
-        """Friction force at an instant that needs no normal force, (n,), scaled."""
+        """Friction force without normal force at an instant, (n,), scaled."""
         if self.bound.shape[1] == 1:
             return np.asarray(self.bound[:, 0])
         return np.asarray(self.bound[:, instant])
 
     def states_at(self, jumps: Array) -> States:
-        """States of contacts whose jumps are those of rigid bodies.
+        """States of contacts for jumps of rigid bodies.
 
         Jumps and states have the shape (n, n_instants); jumps are scaled.
         """
@@ -141,7 +141,7 @@ class Rules:
         return np.where(closed, slip, OPEN).astype(np.int8)
 
     def before_slip(self, bound: Array, force: Array) -> Array:
-        """Friction force r + mu f_n up to its cap, before slip changes it.
+        """Friction bound min(r + mu f_n, cap), before slip changes it, (n,), scaled.
 
         The bound r, the forces of all jumps and the result have the shape (n,) or
         (n, n_instants), scaled.
@@ -150,7 +150,7 @@ class Rules:
         return np.asarray(np.minimum(bound.T + np.maximum(carried, 0.0), self.cap).T)
 
     def bounds(self, force: Array, slip: Array, opening: Array | None = None) -> Array:
-        """Largest friction force at all instants, shape (n, n_instants), scaled.
+        """Friction bound at all instants, shape (n, n_instants), scaled.
 
         Parameters
         ----------
@@ -173,7 +173,7 @@ class Rules:
 
 
 def rules_of(problem: Problem) -> Rules:
-    """Rules of all interfaces with friction, stacked as `Problem.sum_of_contact` says.
+    """Rules of all interfaces with friction, in the order of `Problem.sum_of_contact`.
 
     Raises
     ------
@@ -200,7 +200,7 @@ def rules_of(problem: Problem) -> Rules:
 
 
 def _components(law: Contact, places: Indices) -> list[Rules]:
-    """Rules of the components of a law, by the places of its partners, (n_points,).
+    """Rules of the components of a law, by the indices of partners, (n_points,).
 
     The normal component, which is the first, is the partner of both.
     """
@@ -299,7 +299,7 @@ class Increment(NamedTuple):
 
 
 class InstantSolution(NamedTuple):
-    """States of an instant, its increments and its slips.
+    """Solution of an instant: states, increments and slips.
 
     Attributes
     ----------
@@ -316,13 +316,13 @@ class InstantSolution(NamedTuple):
     slip: Array
 
     def guesses(self, known: Iterable[States]) -> list[InstantSolution]:
-        """The solution itself, and copies of it with other states, (n,) each."""
+        """The solution, and copies with other states, (n,) each, as guesses."""
         copies = [self._replace(states=states) for states in known]
         return [self, *copies]
 
 
 class Starts:
-    """Choice of the states that an instant starts from: a guess, or the instant before.
+    """Choice of the initial states of an instant: a guess, or the instant before.
 
     The choice is the start that has taken fewer linear systems an instant so far.
     """
@@ -341,7 +341,7 @@ class Starts:
         return guess <= before
 
     def took(self, systems: int, *, from_guess: bool) -> None:
-        """Count the systems that an instant took from one of the two starts."""
+        """Count the linear systems of an instant that started from the guess or not."""
         if from_guess:
             self._systems_from_guess += systems
             self._instants_from_guess += 1

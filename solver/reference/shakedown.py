@@ -1,4 +1,4 @@
-"""Shakedown: the load up to which slip may cease (Melan's theorem for friction).
+"""Shakedown limit: the load up to which slip can cease (Melan, for friction).
 
 **Known bounds** (A. Klarbring, M. Ciavarella, J. R. Barber, Shakedown in elastic
 contact problems with Coulomb friction, Int. J. Solids Struct. 44, 2007): slip that
@@ -95,7 +95,7 @@ def shakedown_limit(problem: Problem, cycle: slice) -> float:
 def _forces_of_slips(
     condensed: Condensation, cycle: slice
 ) -> tuple[Array, Array, Array]:
-    """Forces of points by their slips, by the loads, and without any; scaled.
+    """Forces of points by slips, by loads, and initially; scaled.
 
     Returns
     -------
@@ -127,7 +127,7 @@ def _count(problem: Problem) -> int:
 
 
 def _limit_of_points(elastic: Array, bound: Array) -> float:
-    """Limit where the worst point decides: two instants pull it both ways too far.
+    """Limit by the worst point, which slips in both directions beyond it.
 
     Forces of the loads and bounds have the shape (n_points, n_instants), scaled.
     """
@@ -142,7 +142,7 @@ def _limit_of_points(elastic: Array, bound: Array) -> float:
 
 
 def _limit_in_rings(elastic: Array, bound: Array, rings: Array) -> float:
-    """Limit where forces round rings move nothing, and differ at each instant.
+    """Limit with self-stresses in rings, different at each instant.
 
     Forces of the loads and bounds have the shape (n_points, n_instants), scaled; forces
     round rings (n_points, n_stresses).
@@ -184,7 +184,7 @@ def _largest(
 
 @dataclass(frozen=True, eq=False)
 class SlipSpace:
-    """The planes between which all points stick and press: A w <= b.
+    """Set of slips w, A w <= b, for which all points stick and press.
 
     Attributes
     ----------
@@ -201,7 +201,7 @@ class SlipSpace:
 
 
 def slip_space(problem: Problem) -> SlipSpace:
-    """Planes between which all points stick, and all contacts are closed.
+    """Set of slips for which all points stick, and all contacts are closed.
 
     Points that a clamp holds, too, are left out.
 
@@ -241,7 +241,7 @@ def slip_space(problem: Problem) -> SlipSpace:
 
 
 def _is_of_coulomb(condensed: Condensation) -> bool:
-    """Check that friction is Coulomb's, and that forces follow from jumps."""
+    """Check whether friction is Coulomb's, and forces are determined by jumps."""
     rules = condensed.rules
     is_whole = len(condensed.base) == len(condensed.moving)
     if not is_whole or condensed.stresses.size:
@@ -252,7 +252,7 @@ def _is_of_coulomb(condensed: Condensation) -> bool:
 
 
 def largest_swing(space: SlipSpace, cycle: slice) -> tuple[float, Array]:
-    """Largest swing of a load about its mean under which some slip can stay.
+    """Largest factor on the swing of a load about its mean for which slip can cease.
 
     Returns
     -------
@@ -279,8 +279,8 @@ def largest_swing(space: SlipSpace, cycle: slice) -> tuple[float, Array]:
     return float(solution.x[size]), solution.x[:size] * scale / unit
 
 
-def room_of_two(space: SlipSpace, cycle: slice) -> Array:
-    """Slips of two points that may stay at all instants, between the innermost lines.
+def persistent_slips(space: SlipSpace, cycle: slice) -> Array:
+    """Polygon of slips of two points that can persist at all instants.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The linear system of an instant where next to nothing in series holds a rigid motion.
+"""Linear system of an instant whose rigid motions only very soft springs hold.
 
 Along a motion that a spring holds which is softer than a body by all digits of a
 number, the stiffness between the jumps is nothing but rounding. There rigid motions a
@@ -30,7 +30,7 @@ gives back the digits that scaling lost."""
 def system_of(
     condensed: Condensation, stop: Callable[[], bool] | None = None
 ) -> LinearSystem:
-    """The linear system of a condensed structure, by how soft what is in series is.
+    """Linear system of a condensed structure, chosen by the softness of springs.
 
     `stop` is as of `LinearSystem`.
     """
@@ -44,7 +44,7 @@ def system_of(
 
 
 class SoftSystem(LinearSystem):
-    """The linear system whose rigid motions are unknown beside the deformation."""
+    """Linear system with rigid motions as unknowns besides the deformation."""
 
     def _factored(self, states: States) -> Factors:
         """Factors of the whole matrix of states, (n,), with rigid motions, scaled."""
@@ -63,7 +63,7 @@ class SoftSystem(LinearSystem):
         return Factors(matrix * self._column_scale)
 
     def _of_motions(self) -> Array:
-        """Force of each row less its friction by each motion, (n_rows, n_motions)."""
+        """Matrix of forces of rows less friction by motions, (n_rows, n_motions)."""
         pulled = -self._of_unknowns[:, self._kept] @ self._gauge[self._kept]
         rows = self._lengthening[:, None] * pulled[self._rows]
         rows += self._drag[:, None] * pulled[self._carriers]
@@ -79,7 +79,7 @@ class SoftSystem(LinearSystem):
         return np.hstack([-self._gauge[self._free].T, beyond, kept.T @ kept])
 
     def _solved(self, right_sides: RightSides) -> Solved:
-        """Solve the factored system, and again for what is missing."""
+        """Solve the factored system, with iterative refinement."""
         count = len(self._unknowns)
         n_base = len(self._base)
         held = right_sides.held[self._base[self._kept]]

@@ -100,7 +100,7 @@ class Reference:
 
 
 def fingerprint(problem: Problem) -> bytes:
-    """Digest of exactly the data of a problem that the incremental solvers read.
+    """Digest of the data of a problem that the incremental solvers read.
 
     So cuts count where degrees of freedom depend on them, as in the plane, and do not
     along a rod; the method never does. Problems that differ by rounding count as two.

@@ -1,4 +1,4 @@
-"""Stability of a solution of one instant, and the way down from one without.
+"""Stability of the solution of an instant, and the direction of instability.
 
 Where friction falls with slip the contacts that slip have a negative stiffness. A
 solution is stable while the stiffness of structure and contacts together is positive
@@ -29,13 +29,13 @@ class Stability:
         self._friction_law = friction_law
 
     def is_stable(self, at: InstantSolution, right_sides: RightSides) -> bool:
-        """Check that no further slip of a solution costs less than it gains."""
+        """Check whether a solution is stable: no further slip releases energy."""
         return self.continues(at, at, right_sides)
 
     def continues(
         self, at: InstantSolution, reached: InstantSolution, right_sides: RightSides
     ) -> bool:
-        """Check that a solution reached continues the branch of another.
+        """Check whether a reached solution is on the branch of another.
 
         The solution does if the structure is stable however far the contacts that slip
         in either have softened in between, whatever else slips: then no other solution
@@ -55,7 +55,7 @@ class Stability:
         return True
 
     def leave(self, at: InstantSolution, right_sides: RightSides) -> InstantSolution:
-        """Disturb a solution that is not stable, in the direction that it gives way.
+        """Disturb an unstable solution in its direction of instability.
 
         All points that slip go on along the motion that costs least, until half of the
         slip after which the first of them would stop.
@@ -74,7 +74,7 @@ class Stability:
         return at._replace(slip=further * at.states)
 
     def _weakest_direction(self, at: InstantSolution, right_sides: RightSides) -> Array:
-        """Slip per jump, along its friction, in the motion that costs least, (n,)."""
+        """Slip of each jump, along its friction, in the softest motion, (n,)."""
         condensed = self._condensed
         contacts, free = self._contact_stiffness(at, at, right_sides)
         motion = np.zeros(len(condensed.base))
@@ -92,7 +92,7 @@ class Stability:
     def _contact_stiffness(
         self, at: InstantSolution, reached: InstantSolution, right_sides: RightSides
     ) -> tuple[Array | None, Indices]:
-        """Stiffness of contacts, as far as they soften between two solutions, scaled.
+        """Stiffness of contacts, with softening between two solutions, scaled.
 
         Returns
         -------

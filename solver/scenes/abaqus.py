@@ -1,4 +1,4 @@
-"""Files of Abaqus, written anew as meshio reads them.
+"""Files of Abaqus, rewritten for meshio.
 
 meshio knows few names of plane elements, takes the last of several blocks of nodes for
 all nodes, counts the names of blocks of elements as if each block had another one, and
@@ -21,7 +21,7 @@ KNOWN = {"3": "CPS3", "4": "CPS4", "6": "CPE6", "8": "S8R"}
 
 
 def for_meshio(data: bytes) -> bytes:
-    """File of Abaqus with elements that meshio knows, and one block of nodes.
+    """Rewrite a file of Abaqus with elements that meshio knows, and one block of nodes.
 
     Each block of elements has a name, which ends with `NUMBER` and its number. Nothing
     else is in it: meshio follows what it takes for the name of another file.
@@ -58,7 +58,7 @@ def for_meshio(data: bytes) -> bytes:
 
 
 def _blocks(text: str) -> Iterator[tuple[str, list[str]]]:
-    """Yield lines with keywords, and the lines of data below each; no remarks."""
+    """Yield lines with keywords, and the lines of data below each, without comments."""
     head = ""
     rows = list[str]()
     for line in text.splitlines():
@@ -79,7 +79,7 @@ def _blocks(text: str) -> Iterator[tuple[str, list[str]]]:
 
 
 def _with_known_element(head: str, number: int) -> str:
-    """Line above the elements of a block with an element that meshio knows.
+    """Keyword line of a block of elements, with an element type that meshio knows.
 
     `number` is that of the block.
     """
@@ -91,7 +91,7 @@ def _with_known_element(head: str, number: int) -> str:
 
 
 def _named_nodes(head: str, rows: list[str]) -> list[str]:
-    """Lines of a set of the nodes of a block that has a name, else none."""
+    """Lines of a set with the nodes of a named block; none without a name."""
     name = _option(head, "NSET")
     if not name:
         return []
@@ -100,7 +100,7 @@ def _named_nodes(head: str, rows: list[str]) -> list[str]:
 
 
 def _is_of_numbers(row: str) -> bool:
-    """Check whether a line of data has whole numbers alone."""
+    """Check whether a line of data has only whole numbers."""
     return all(word.strip().isdigit() for word in row.split(",") if word.strip())
 
 
@@ -114,7 +114,7 @@ def _option(head: str, key: str) -> str:
 
 
 def _of_parts(found: str) -> RefusedError:
-    """Refusal of a file whose nodes are not where they say."""
+    """Refusal of a file with parts and instances."""
     return RefusedError(
         "mesh",
         Words(f"with {found}"),

@@ -17,7 +17,7 @@ from solver.discrete.plane.makers.named_mesh_refused import check_named
 from solver.discrete.problem import Problem
 from solver.refusal import RefusedError, Words
 from solver.scenes.mesh_files import from_text, read_example
-from solver.scenes.named_sides import ALLOWED, MeshSides, conditions_of, taken_apart
+from solver.scenes.named_sides import ALLOWED, MeshSides, conditions_of, split_phrase
 from solver.scenes.plane import PlaneSettings, RectangleSettings
 from solver.settings.definitions import BODY, LOAD, Rows, TablePreset, redefined
 from solver.settings.load_paths import PRESETS, PRESSURES
@@ -268,7 +268,7 @@ class MeshSettings(PlaneSettings):
             raise _of_setting(refusal.name, refusal) from None
         every = {condition.split()[0] for condition in self._every_condition}
         if not every & {"held", "moved"}:
-            names = ", ".join(taken_apart(line)[0] for line in conditions) or "no name"
+            names = ", ".join(split_phrase(line)[0] for line in conditions) or "no name"
             raise self.refusal(
                 "sides",
                 "at least one side that is held or moved",
@@ -315,7 +315,7 @@ class MeshSettings(PlaneSettings):
         yield from super().left_out()
         between = [name for name, bodies in self.parts.groups if len(bodies) > 1]
         for name in dict.fromkeys(between):
-            _, conditions = taken_apart(name)
+            _, conditions = split_phrase(name)
             if conditions:
                 yield (
                     f"mesh: “{name}” is a contact where it lies between two bodies; "
@@ -394,7 +394,7 @@ class MeshSettings(PlaneSettings):
         parts = []
         for line, conditions in self.conditions.items():
             if conditions and conditions != ("free",):
-                parts.append(f"{taken_apart(line)[0]} {' and '.join(conditions)}")
+                parts.append(f"{split_phrase(line)[0]} {' and '.join(conditions)}")
         return f"{bodies} of a mesh {touch}, with {shared.listed(parts)}."
 
 

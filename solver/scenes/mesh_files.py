@@ -166,7 +166,7 @@ def _along_named_points(
     Parameters
     ----------
     sets
-        Numbers of the points of each set, (n,).
+        Indices of the points of each set, (n,).
     bodies
         Corners of the elements of each body, (n, 3) or (n, 4).
     """
@@ -213,7 +213,7 @@ def _named_cells(mesh: Any) -> Iterator[tuple[str, str, Indices]]:
 
 
 def _sets_by_size(mesh: Any) -> dict[str, list[Indices]]:
-    """Numbers of the cells in each set for each block, (n,); the largest set first.
+    """Indices of the cells in each set for each block, (n,); the largest set first.
 
     An element in several sets is of the body of the first. Sets of all elements come
     last, as they do not tell bodies apart, and those without a name of their own not at

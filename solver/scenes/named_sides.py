@@ -53,8 +53,8 @@ _PHRASE = re.compile(
 ALLOWED = f"a name of a side and one or more of {', '.join(CONDITIONS)}, joined by and"
 
 
-def taken_apart(phrase: str) -> tuple[str, tuple[str, ...]]:
-    """Name of a side, and what happens to it; nothing where the phrase does not say."""
+def split_phrase(phrase: str) -> tuple[str, tuple[str, ...]]:
+    """Split a phrase into the name of a side and its conditions, if any."""
     match = _PHRASE.fullmatch(phrase.strip())
     if match is None:
         return phrase.strip(), ()
@@ -76,21 +76,21 @@ def conditions_of(lines: Sequence[str], given: str) -> Mapping[str, tuple[str, .
     """
     known: dict[str, tuple[str, ...]] = {}
     for line in lines:
-        name, conditions = taken_apart(line)
+        name, conditions = split_phrase(line)
         usual = USUAL.get(name.lower())
         if not conditions and usual:
             conditions = (usual,)
         known[line] = conditions
-    names = {taken_apart(line)[0].lower(): line for line in lines}
+    names = {split_phrase(line)[0].lower(): line for line in lines}
     for phrase in given.split(","):
         if not phrase.strip():
             continue
-        name, conditions = taken_apart(phrase)
+        name, conditions = split_phrase(phrase)
         if not conditions:
             remedy = f"write “{name} held”, or another of these"
             raise RefusedError("sides", phrase.strip(), ALLOWED, remedy)
         if name.lower() not in names:
-            sides = ", ".join(taken_apart(line)[0] for line in lines) or "none"
+            sides = ", ".join(split_phrase(line)[0] for line in lines) or "none"
             remedy = f"there is no side {name!r}: those of the mesh are {sides}"
             raise RefusedError("sides", phrase.strip(), ALLOWED, remedy)
         known[names[name.lower()]] = conditions
@@ -168,7 +168,7 @@ class MeshSides:
                 other.body for other in self.mesh.sides if other.name == line.name
             }
             for condition in self.conditions[line.name]:
-                name = f"{taken_apart(line.name)[0]} {condition}"
+                name = f"{split_phrase(line.name)[0]} {condition}"
                 if len(bodies) > 1:
                     name = f"{name}, {self.mesh.names[line.body]}"
                 counts[name] = counts.get(name, 0) + 1

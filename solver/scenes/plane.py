@@ -106,7 +106,7 @@ class PlaneSettings(Settings):
 
     @property
     def is_rough(self) -> bool:
-        """Check whether there is any friction."""
+        """Check whether there is friction at any pair."""
         return bool(self.friction or self.law.cohesion)
 
     @property

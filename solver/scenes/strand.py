@@ -186,7 +186,7 @@ class StrandSettings(Settings):
         return f"{wires} rub on each other; their right ends are {pulled}."
 
     def _break_node(self) -> int:
-        """Number of the node at which the wire is broken, inside the wire."""
+        """Index of the node at which the wire is broken, inside the wire."""
         node = round(self.break_position * self.elements)
         return min(max(node, 1), self.elements - 1)
 

@@ -142,7 +142,7 @@ def test_driven_points_rub_against_their_slip_and_else_as_their_neighbour() -> N
     even = np.clip(0.5 * forces[1], -bound, bound)
     assert friction[~slips] == pytest.approx(even[~slips])
     assert np.count_nonzero(~slips) == 6
-    assert found.contacts.tolist() == [0, 2]
+    assert found.tangential.tolist() == [0, 2]
 
 
 def test_driven_points_on_springs_lag_like_play_and_on_stiff_ones_not() -> None:
@@ -186,7 +186,7 @@ PEAK = Drive("peak", "N", VALUES)
 
 def test_the_end_of_a_step_of_a_drive_is_the_beginning_of_the_next() -> None:
     for instant in range(5):
-        assert PEAK.at(instant, 1.0) == PEAK.at(instant + 1, 0.0)
+        assert PEAK.describe(instant, 1.0) == PEAK.describe(instant + 1, 0.0)
         assert PEAK.before(instant + 1) == VALUES[instant]
     changes = [PEAK.changes(instant) for instant in range(6)]
     assert changes == [False, True, False, True, True, True]
@@ -195,11 +195,11 @@ def test_the_end_of_a_step_of_a_drive_is_the_beginning_of_the_next() -> None:
 
 
 def test_a_load_is_told_with_its_share_of_the_largest_of_its_sign() -> None:
-    assert PEAK.at(1, 0.75) == "peak = 1.5 N (0.5 times its largest value)"
-    assert PEAK.at(4) == "peak = -1 N (0.25 times its largest value)"
-    assert PEAK.at(0) == "peak = 0 N"
+    assert PEAK.describe(1, 0.75) == "peak = 1.5 N (0.5 times its largest value)"
+    assert PEAK.describe(4) == "peak = -1 N (0.25 times its largest value)"
+    assert PEAK.describe(0) == "peak = 0 N"
     doubled = replace(PEAK, values=2.0 * VALUES)
-    words = [of.at(3).partition(" (")[2] for of in (PEAK, doubled)]
+    words = [of.describe(3).partition(" (")[2] for of in (PEAK, doubled)]
     assert words[0] == words[1]
 
 
@@ -207,8 +207,10 @@ def test_only_what_changes_is_told_and_what_falls_is_passed_downwards() -> None:
     falling = Drive("pressure", "Pa", np.array([8.0, 8.0, 8.0, 4.0, 4.0, 4.0]))
     assert describe_loads([PEAK, falling], 2) == ""
     assert describe_limit([PEAK, falling], 2, 0.5) == ""
-    assert describe_loads([PEAK, falling], 1) == PEAK.at(1)
+    assert describe_loads([PEAK, falling], 1) == PEAK.describe(1)
     both = describe_limit([PEAK, falling], 3, 0.5)
-    assert both == f"beyond {PEAK.at(3, 0.5)} and below {falling.at(3, 0.5)}"
-    assert describe_limit([PEAK], 1, 0.0) == f"with {PEAK.at(1)}"
+    assert (
+        both == f"beyond {PEAK.describe(3, 0.5)} and below {falling.describe(3, 0.5)}"
+    )
+    assert describe_limit([PEAK], 1, 0.0) == f"with {PEAK.describe(1)}"
     assert PEAK.during(slice(2, 4)).values.tolist() == [2.0, -4.0]

@@ -118,7 +118,7 @@ def test_cuts_that_are_joined_do_what_each_does() -> None:
     each = incoming.copy()
     for law in laws:
         law.rule(k, TIMES)(incoming, each, ALL)
-    (together,) = Perfect.together(laws)
+    (together,) = Perfect.join(laws)
     moved = incoming.copy()
     together.rule(k, TIMES)(incoming, moved, ALL)
     assert np.array_equal(moved, each)

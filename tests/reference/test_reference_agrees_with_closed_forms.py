@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from solver.discrete import discretise
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
-from solver.reference import search as module
+from solver.reference import rod_minimum as module
 from solver.reference.assembly import Interrupted
 from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 from solver.reference.incremental import reference_of

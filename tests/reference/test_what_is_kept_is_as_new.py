@@ -209,22 +209,22 @@ class Block:
 
 def test_the_oldest_goes_where_memory_ends() -> None:
     kept = Cache(100)
-    first = kept.of("first", lambda: Block(40))
-    kept.of("second", lambda: Block(40))
-    assert kept.of("first", lambda: Block(40)) is first
-    kept.of("third", lambda: Block(40))
+    first = kept.get("first", lambda: Block(40))
+    kept.get("second", lambda: Block(40))
+    assert kept.get("first", lambda: Block(40)) is first
+    kept.get("third", lambda: Block(40))
     assert kept.nbytes == 80
-    assert kept.of("first", lambda: Block(40)) is first
+    assert kept.get("first", lambda: Block(40)) is first
     second = Block(40)
-    assert kept.of("second", lambda: second) is second
+    assert kept.get("second", lambda: second) is second
 
 
 def test_what_is_too_large_is_not_kept_and_drops_nothing() -> None:
     kept = Cache(100)
-    small_one = kept.of("small", lambda: Block(60))
-    kept.of("large", lambda: Block(101))
+    small_one = kept.get("small", lambda: Block(60))
+    kept.get("large", lambda: Block(101))
     assert kept.nbytes == 60
-    assert kept.of("small", lambda: Block(60)) is small_one
+    assert kept.get("small", lambda: Block(60)) is small_one
 
 
 def test_what_fails_is_not_kept() -> None:
@@ -234,7 +234,7 @@ def test_what_fails_is_not_kept() -> None:
         raise InterruptedError
 
     with pytest.raises(InterruptedError):
-        kept.of("key", fail)
+        kept.get("key", fail)
     assert kept.nbytes == 0
 
 

@@ -9,7 +9,7 @@ from solver.discrete.plane.makers.named_mesh_refused import check_named
 from solver.files.meshes import text_of_mesh
 from solver.scenes import CATALOGUE
 from solver.scenes.mesh_files import as_text, read_mesh
-from solver.scenes.named_sides import conditions_of, taken_apart
+from solver.scenes.named_sides import conditions_of, split_phrase
 from solver.settings.values import SettingError
 from tests.helpers.mesh_files import ABAQUS
 
@@ -142,9 +142,9 @@ def test_groups_of_gmsh_in_a_file_of_abaqus_are_bodies_and_sides() -> None:
     conditions = conditions_of(list(mesh.lines), "")
     assert conditions["bottom_held"] == ("held",)
     assert conditions["lid_moved_x"] == ("moved x",)
-    assert taken_apart("bottom_held")[0] == "bottom"
+    assert split_phrase("bottom_held")[0] == "bottom"
     # A word within another is none.
-    assert taken_apart("withheld") == ("withheld", ())
+    assert split_phrase("withheld") == ("withheld", ())
     settings = MESH.checked({"mesh": as_text(mesh)})
     assert "bottom held and lid moved x" in settings.sentence()
 

@@ -77,7 +77,7 @@ class Beam:
 
     @cached_property
     def laid_out(self) -> Array:
-        """Middle of every beam of the line laid out straight, (n_nodes - 1, 2), m."""
+        """Middle of every beam if the line were straight, (n_nodes - 1, 2), m."""
         along = np.cumsum(self.lengths) - 0.5 * self.lengths
         return np.stack([along, np.zeros_like(along)], axis=1)
 
@@ -92,11 +92,11 @@ class Beam:
         return self.area * self.size
 
     def along(self, corners: Sequence[int] | Indices) -> Indices:
-        """Chain of nodes, (n,), which is the nodes themselves."""
+        """Chain of nodes, (n,): the corners of a line are its nodes."""
         return np.asarray(corners, dtype=np.intp)
 
     def edges_of(self, chain: Indices) -> Indices | None:
-        """Numbers of the beams of a chain, (n_edges,); None if it is no chain."""
+        """Indices of the beams of a chain, (n_edges,); None if it is no chain."""
         if len(chain) < 2 or np.any(np.abs(np.diff(chain)) != 1):
             return None
         return np.minimum(chain[:-1], chain[1:])
@@ -109,7 +109,7 @@ class Beam:
 
     @property
     def element_corners(self) -> Indices:
-        """Both ends of every beam, forth and back, shape (n_nodes - 1, 4)."""
+        """Ends of every beam as corners a, b, b, a, shape (n_nodes - 1, 4)."""
         return self.element_nodes[:, [0, 1, 1, 0]]
 
     def steps(self, chain: Indices) -> tuple[Indices, Array]:
@@ -180,7 +180,7 @@ class Beam:
         return volumes
 
     def strains(self, elements: Indices) -> sparse.csr_array:
-        """Matrix from nodal displacements to strains of the axes of some beams.
+        """Matrix from nodal displacements to axial strains of some beams.
 
         Strains xx, yy, 2 xy of each beam in turn, shape (3 n_elements, 2 n_nodes), 1/m.
         """

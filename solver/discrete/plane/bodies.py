@@ -43,7 +43,7 @@ STRAIGHT = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """Bodies of any shape, joints between them, and what holds and loads them.
+    """Bodies of any shape, joints between them, supports and loads.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class Bodies:
 
     @cached_property
     def first_nodes(self) -> Indices:
-        """Number of the first node of each body among those of all, (n_bodies + 1,).
+        """Index of the first node of each body among those of all, (n_bodies + 1,).
 
         Nodes of all bodies follow each other; the last number is how many there are.
         """
@@ -160,7 +160,7 @@ class Bodies:
 
     @cached_property
     def joint_kinds(self) -> list[int]:
-        """Number of the kind of each joint: as `kinds_of` says, (n_joints,)."""
+        """Index of the kind of each joint: as `kinds_of` says, (n_joints,)."""
         return kinds_of(self.bodies, self.joints)
 
     @cached_property
@@ -173,12 +173,12 @@ class Bodies:
 
     @property
     def _given(self) -> list[Held | Load]:
-        """Holds, and after them loads."""
+        """All holds, then all loads."""
         return [*self.held, *self.loads]
 
     @property
     def _shown(self) -> Held | Load | None:
-        """Held or Load that the loop shows; None where nothing is held or loaded."""
+        """Hold or load of the loop; None where nothing is held or loaded."""
         for each in self._given:
             if self.shown in (None, each.name):
                 return each
@@ -198,7 +198,7 @@ class Bodies:
         return (f"Displacement of {shown.name}", "m"), (f"Force on {shown.name}", "N")
 
     def loop(self, problem: Problem) -> Loop:
-        """Loop of what is shown: the mean displacement that its force works on."""
+        """Hysteresis loop of the shown hold or load: force over mean displacement."""
         shown = self._shown
         if isinstance(shown, Held):
             force = reaction(problem, shown.name, shown.axis).of
@@ -258,7 +258,7 @@ class Bodies:
         yield Act("body", "W", middle, *_directed(self.weights), "N")
 
     def _held_by_nodes(self) -> list[list[Held]]:
-        """Nodes held along an axis, together with those held along the other, too."""
+        """Holds, grouped with those of the same nodes along the other axis."""
         axes = dict[tuple[int, bytes], list[Held]]()
         for held in self.held:
             if held.axis < 2:
@@ -266,7 +266,7 @@ class Bodies:
         return list(axes.values())
 
     def _acts_of_held(self, alike: Sequence[Held]) -> Iterator[Act]:
-        """Acts of displacements of the same nodes; one act if they go straight."""
+        """Arrows of displacements of the same nodes: one if their path is straight."""
         moved = [held for held in alike if np.any(held.mean)]
         if len(moved) == 2:
             motion = np.zeros((2, len(self.instants)))
@@ -291,7 +291,7 @@ class Bodies:
         values: Array,
         unit: str,
     ) -> Act:
-        """Act of a hold or a load, at the middle one of its nodes."""
+        """Arrow of a hold or a load, at the middle one of its nodes."""
         along = np.asarray(towards)
         if along.ndim > 1:
             along = along[:, np.abs(values).argmax()]
@@ -308,14 +308,14 @@ class Bodies:
         return Act(given.name, symbol, points, towards, values, unit, (x, y))
 
     def _chains_of(self, given: Held | Load) -> list[Indices]:
-        """Chains of edges that nodes of a hold or load make; [] if they are none."""
+        """Chains of edges along the nodes of a hold or load; [] for single nodes."""
         shape = self.bodies[given.body].shape
         if not isinstance(shape, Mesh):
             return []
         return shape.chains_of(given.nodes)
 
     def _lines(self, given: Held | Load) -> list[tuple[Indices, Array]]:
-        """Nodes of a hold or load in order along lines, (n,), and unit vectors there.
+        """Nodes of a hold or load in order along lines, (n,), and unit vectors outward.
 
         The vectors point out of the body, (n, 2): those of its edges, or where the
         nodes are no chains of edges all the way from its middle to theirs.

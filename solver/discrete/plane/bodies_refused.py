@@ -1,4 +1,4 @@
-"""Checks of bodies beside each other, of joints, and of what holds and loads them."""
+"""Checks of bodies together: names, joints, holds and loads."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ def check_names(named: Sequence[Body | Joint | Held | Load]) -> None:
 
 
 def check_weight(body: Body, instants: int) -> None:
-    """Refuse a weight of another shape."""
+    """Refuse a weight whose shape does not fit the instants."""
     if body.weight is not None:
         check_value(f"{body}.weight", body.weight, Numbers(((2, instants),)))
 
 
 def check_held(bodies: Sequence[Body], held: Held, instants: int) -> None:
-    """Refuse a body, nodes and an axis that do not exist, and other instants."""
+    """Refuse a hold whose body, nodes, axis or instants do not exist."""
     check_value(f"{held} on body", held.body, Count(0, len(bodies) - 1))
     _check_nodes(bodies[held.body], str(held), held.nodes)
     shapes = (instants,), (len(held.nodes), instants)
@@ -62,7 +62,7 @@ def check_held(bodies: Sequence[Body], held: Held, instants: int) -> None:
 
 
 def check_load(bodies: Sequence[Body], load: Load, instants: int) -> None:
-    """Refuse a body and nodes that do not exist, and other instants."""
+    """Refuse a load whose body, nodes or instants do not exist."""
     check_value(f"{load} on body", load.body, Count(0, len(bodies) - 1))
     _check_nodes(bodies[load.body], str(load), load.nodes)
     shape = (len(load.nodes), 2, instants)
@@ -82,7 +82,7 @@ def check_joined(bodies: Sequence[Body], joints: Sequence[Joint]) -> None:
 def check_chains(
     bodies: Sequence[Body], joints: Sequence[Joint], kinds: Sequence[int]
 ) -> None:
-    """Refuse chains of nodes that follow no edges.
+    """Refuse chains of nodes that are not along edges.
 
     Of joints of one kind (`kinds_of`) the first is checked: voussoirs are alike.
     """
@@ -95,7 +95,7 @@ def check_chains(
 
 
 def _check_chain(body: Body, joint: Joint, nodes: Indices) -> None:
-    """Refuse nodes, (n,), that a body does not have, or that follow no edges."""
+    """Refuse nodes, (n,), that a body does not have, or that are not along edges."""
     _check_nodes(body, str(joint), nodes)
     if body.shape.edges_of(nodes) is None:
         raise RefusedError(
@@ -128,7 +128,7 @@ def check_pairs(
     pairs: NodePairs,
     nodes: Array,
 ) -> None:
-    """Refuse normals of other lengths or out of bodies, and pairs that are far apart.
+    """Refuse normals of other lengths or directions, and pairs beyond their gap.
 
     `rotations` are those of all bodies, (n_bodies, 2, 2), `kinds` those of the joints
     (`kinds_of`), `nodes` the positions of all nodes, (n_nodes, 2), m.
@@ -139,7 +139,7 @@ def check_pairs(
 
 
 def _check_lengths(joints: Sequence[Joint], pairs: NodePairs) -> None:
-    """Refuse normals of another length than 1."""
+    """Refuse normals that are no unit vectors."""
     differences = np.abs(np.hypot(*pairs.normals.T) - 1.0)
     if np.any(differences > UNIT):
         joint, number, _ = _first(differences, differences > UNIT, joints, pairs)
@@ -188,7 +188,7 @@ def _check_directions(
 
 
 def _check_opposite(joints: Sequence[Joint], pairs: NodePairs, nodes: Array) -> None:
-    """Refuse nodes of a pair, at positions in m, that are apart beyond their gap."""
+    """Refuse pairs of nodes, at positions in m, farther apart than their gap."""
     sizes = np.diff(pairs.first)
     above = nodes[pairs.above]
     # From the last node of a joint to the first of the next there is no step.
@@ -211,7 +211,7 @@ def _check_opposite(joints: Sequence[Joint], pairs: NodePairs, nodes: Array) -> 
 def _first(
     values: Array, is_refused: Flags, joints: Sequence[Joint], pairs: NodePairs
 ) -> tuple[Joint, int, float]:
-    """First joint with a pair that is refused, its worst pair, and the value of that.
+    """First joint with a refused pair, the worst of its pairs, and its value.
 
     Values, large where they are bad, and flags are those of the pairs of all joints,
     shape (n,).

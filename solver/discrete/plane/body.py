@@ -135,7 +135,7 @@ class Body:
 
 @cache
 def _kinds_of_joint(size: int) -> dict[str, Kind]:
-    """Kinds of the fields of a joint of so many pairs."""
+    """Kinds of the fields of a joint with `size` pairs."""
     return {
         # Which nodes there are is known to the bodies.
         "nodes": Numbers(((size,),), whole=True),
@@ -154,9 +154,9 @@ class Joint:
     name
         Name of the interface.
     above, nodes
-        Number of the body above, and a chain of its nodes, (n,).
+        Index of the body above, and a chain of its nodes, (n,).
     below, nodes_below
-        Number of the body below and the chain of its nodes opposite, (n,); None for a
+        Index of the body below and the chain of its nodes opposite, (n,); None for a
         rigid rough support.
     normals
         Unit normals out of what is below into the body above, shape (n, 2), in global
@@ -206,7 +206,7 @@ class Joint:
 
     @cached_property
     def sides(self) -> list[tuple[int, Indices]]:
-        """Bodies and their chains of nodes; the one above first."""
+        """Bodies and their chains of nodes; the body above comes first."""
         sides = [(self.above, self.nodes)]
         if self.below is not None and self.nodes_below is not None:
             sides.append((self.below, self.nodes_below))
@@ -220,7 +220,7 @@ class Held:
     Attributes
     ----------
     name, body, nodes
-        Name, number of the body, and numbers of its nodes, (n,).
+        Name, index of the body, and indices of its nodes, (n,).
     axis
         0 along x, 1 along y, 2 turn of a beam.
     displacement
@@ -276,7 +276,7 @@ class Load:
     def of_traction(
         cls, name: str, number: int, body: Body, chain: Indices, traction: Array
     ) -> Load:
-        """Load of a uniform traction along a chain of nodes of the body of that number.
+        """Load of a uniform traction along a chain of nodes of a body.
 
         `traction` is along x and y, shape (2, n_instants), Pa.
         """
@@ -296,6 +296,6 @@ class Load:
 
     @cached_property
     def pattern(self) -> Array:
-        """Forces at the instant of the largest ones, shape (n, 2), N."""
+        """Forces at the instant at which they are largest, shape (n, 2), N."""
         sizes = np.abs(self.force).sum(axis=(0, 1))
         return self.force[:, :, int(sizes.argmax())]

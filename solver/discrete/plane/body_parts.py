@@ -37,7 +37,7 @@ class ShapePart:
     body
         A body of this shape and material.
     chosen, nodes
-        Numbers of its elements and of its nodes among those of the shape, ascending.
+        Indices of its elements and of its nodes among those of the shape, ascending.
     units
         Units of length, m, and of stress, Pa.
     state
@@ -57,7 +57,7 @@ class ShapePart:
 
     @cached_property
     def content(self) -> Hashable:
-        """Key that is equal for the same part of the same shape and material."""
+        """Key of a part: equal keys mean equal shape, elements and material."""
         body = self.body
         material = body.young, body.poisson, self.state
         return body.shape.content, content_of(self.chosen), material, self.units
@@ -70,14 +70,14 @@ class ShapePart:
         return 3
 
     def has(self, nodes: Indices) -> Flags:
-        """Check which nodes of the shape are its own, (n,) both."""
+        """Mask of those nodes of the shape, (n,), that belong to the part."""
         is_own = np.zeros(len(self.body.shape.nodes), dtype=bool)
         is_own[self.nodes] = True
         return is_own[nodes]
 
     @cached_property
     def size(self) -> float:
-        """Side of a square of the same area, or length of beams, m."""
+        """Size l_sub: side of a square of the same area, or length of beams, m."""
         shape = self.body.shape
         if isinstance(shape, Mesh):
             return float(np.sqrt(shape.areas[self.chosen].sum()))
@@ -138,7 +138,7 @@ class ShapePart:
     def forces(
         self, weight: Array | None, loads: Sequence[PartForce]
     ) -> PartForce | None:
-        """Forces of weight and loads along x and y of its nodes, N; None without any.
+        """Forces of weight and loads on the nodes along x and y, N; None without any.
 
         The weight is per volume along x and y, (2, n_instants), N/m^3. Patterns of
         loads and of the result have the shape (n_nodes, 2, n_patterns).
@@ -156,7 +156,7 @@ class ShapePart:
 
     @cached_property
     def elements(self) -> Indices:
-        """Corners of its elements among its own nodes, shape (n_elements, 4)."""
+        """Corners of the elements, as indices of the part's nodes, (n_elements, 4)."""
         corners = self.body.shape.element_corners[self.chosen]
         return np.searchsorted(self.nodes, corners)
 

@@ -48,7 +48,7 @@ class CutBodies:
     joint_names, pieces
         Names of the joints, and their pieces.
     first_parts
-        Numbers of the first part of each body, and of the parts.
+        Indices of the first part of each body, and of the parts.
     shape_parts
         All parts in the axes of their shapes.
     parts
@@ -130,11 +130,11 @@ class CutBodies:
         return np.concatenate(found)
 
     def owner(self, number: int, part: int) -> int:
-        """Number of a part of a body among all."""
+        """Index of a part of a body among all."""
         return self.first_parts[number] + part
 
     def local_frames(self, number: int, nodes: Indices) -> Array:
-        """Directions at nodes of a body in its own axes, shape (n, 2, 2)."""
+        """Directions at nodes of a body in the axes of the body, shape (n, 2, 2)."""
         first = self.structure.first_nodes[number]
         return np.asarray(self._own_frames[first + nodes])
 
@@ -152,7 +152,7 @@ class CutBodies:
         return own
 
     def _of_shapes(self) -> list[ShapePart]:
-        """Parts of shapes, body by body; those of one kind are shared."""
+        """Parts of shapes, body by body; equal bodies share theirs."""
         found = dict[Hashable, list[ShapePart]]()
         parts = []
         for body, cut in zip(self.structure.bodies, self.cuts, strict=True):
@@ -223,7 +223,7 @@ class CutBodies:
                     self._traces[owner][name, body, number] = Trace(dofs, k, True)
 
     def _trace_held(self) -> None:
-        """Add the rows of prescribed displacements, in every part that has the node."""
+        """Add the rows of prescribed displacements, in every part with the node."""
         for number, held in enumerate(self.structure.held):
             weights = self._weights_held(held)
             for part in range(self.structure.bodies[held.body].substructures):
@@ -247,7 +247,7 @@ class CutBodies:
         return self.frames.held_at(held.body, nodes, held.axis)
 
     def _weights_held(self, held: Held) -> Array:
-        """Length that belongs to each held node, (n,), m; all alike where no chain."""
+        """Tributary length of each held node, (n,), m; equal ones without a chain."""
         shape = self.structure.bodies[held.body].shape
         if shape.edges_of(held.nodes) is None:
             return np.full(len(held.nodes), shape.size / len(held.nodes))
@@ -283,7 +283,7 @@ class CutBodies:
             )
 
     def _nodes_of_parts(self) -> list[PartNodes]:
-        """Nodes, motions and forces of every part; parts alike are made together."""
+        """Nodes, motions and forces of every part; equal parts are made together."""
         loads = self._loads()
         motions = self._motions()
         found = dict[int, PartNodes]()
@@ -300,7 +300,7 @@ class CutBodies:
         return motions
 
     def _alike_in_force(self, loads: Container[int]) -> list[list[int]]:
-        """Numbers of parts alike in shape and weight; loaded ones are like no other."""
+        """Groups of parts with equal shape and weight; loaded parts are in no group."""
         alike = dict[Hashable, list[int]]()
         for owner, own in enumerate(self.shape_parts):
             key: Hashable = owner
@@ -313,7 +313,7 @@ class CutBodies:
     def _nodes_of_alike(
         self, owners: Sequence[int], motions: Array, loads: Sequence[PartForce]
     ) -> list[PartNodes]:
-        """Nodes, motions and forces of parts alike, by their numbers.
+        """Nodes, motions and forces of equal parts, by their indices.
 
         `motions` are those of all nodes, (n_nodes, N_AXES, 3), `loads` the forces on
         the nodes of the parts, with patterns (n_nodes_of_part, 2, n_patterns), N.
@@ -360,7 +360,7 @@ class CutBodies:
 
 
 def _separated(force: Array) -> tuple[Array, Array]:
-    """Forces, (n, n_instants), as patterns, (n, rank), times courses over time."""
+    """Forces, (n, n_instants), as patterns, (n, rank), times functions of time."""
     loaded = np.flatnonzero(force.any(axis=1))
     if len(loaded) > FEW:
         return separated(force)

@@ -39,7 +39,7 @@ class CutShape:
     Attributes
     ----------
     labels
-        Number of the part of each element, (n_elements,).
+        Index of the part of each element, (n_elements,).
     elements, nodes
         Elements and nodes of each part, ascending, (n,) each.
     seams
@@ -67,7 +67,7 @@ class CutShape:
 
 
 def bisected(centres: Array, count: int) -> Indices:
-    """Numbers of the groups of points, (n,), of a count, by repeated bisection.
+    """Index of the group of each point, (n,): groups by repeated bisection.
 
     Each group of the points, (n, 2), is halved across its longer direction.
     """
@@ -77,7 +77,7 @@ def bisected(centres: Array, count: int) -> Indices:
 
 
 def in_one_piece(mesh: Mesh, labels: Indices) -> Indices:
-    """Labels of parts, each of which is one piece, (n_elements,).
+    """Labels of parts, (n_elements,), changed so that each part is one piece.
 
     The largest piece of a part stays; others go one by one, the smallest first, to the
     part with which they share most edges. `labels` are of the same shape.
@@ -108,7 +108,7 @@ def in_one_piece(mesh: Mesh, labels: Indices) -> Indices:
 def _bisect(
     centres: Array, members: Indices, count: int, first: int, labels: Indices
 ) -> None:
-    """Number the parts of the members from `first` on, halved across their length.
+    """Number the parts of the members from `first` on, halving across their length.
 
     `centres` are those of all elements, (n_elements, 2), `labels` are written,
     (n_elements,).
@@ -129,7 +129,7 @@ def _bisect(
 
 
 def _seams_of(shape: Shape, labels: Indices) -> list[Seam]:
-    """Seams between parts, by the numbers of the parts."""
+    """Seams between parts, by the indices of the parts."""
     both, nodes, lengths = shape.seams(labels)
     seams = list[Seam]()
     keys, of_edges = np.unique(both, axis=0, return_inverse=True)
@@ -143,7 +143,7 @@ def _seams_of(shape: Shape, labels: Indices) -> list[Seam]:
 def _seam_of(
     shape: Shape, parts: tuple[int, int], nodes: Indices, lengths: Array
 ) -> Seam:
-    """Seam between two parts, by the nodes of its edges and their shares in lengths.
+    """Seam between two parts, from the nodes of its edges and tributary lengths.
 
     Both have shape (n_edges, n_nodes of an edge); shares are in m.
     """
@@ -156,7 +156,7 @@ def _seam_of(
 
 
 def _along_longest(places: Array) -> Array:
-    """Coordinates, (n,), of places, (n, 2), along their longest direction, both m."""
+    """Coordinates, (n,), of positions, (n, 2), along their longest direction, m."""
     away = places - places.mean(axis=0)
     direction = np.linalg.svd(away, full_matrices=False)[2][0]
     return np.asarray(away @ direction)

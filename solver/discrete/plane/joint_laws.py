@@ -29,17 +29,17 @@ JOINT_SIDES = "above", "below"
 
 
 class JointPiece(NamedTuple):
-    """Part of a joint between a part of the body above and a part of what is below.
+    """Part of a joint: between one part of the body above and one part below.
 
     Attributes
     ----------
     joint
-        Number of the joint.
+        Index of the joint.
     parts
-        Number of the part above, and of that below, among all parts; on a rigid support
+        Index of the part above, and of that below, among all parts; on a rigid support
         of the part above alone.
     places
-        Numbers of the nodes of its pairs along the joint, ascending, (n,).
+        Indices of the nodes of its pairs along the joint, ascending, (n,).
     weights
         Length that belongs to each pair, (n,), m.
     along
@@ -54,7 +54,7 @@ class JointPiece(NamedTuple):
 
 
 class Cut(Protocol):
-    """Bodies that are cut into parts, and their joints into pieces."""
+    """Bodies cut into parts, with joints cut into pieces."""
 
     @property
     def parts(self) -> Sequence[CondensedPart]:
@@ -70,20 +70,20 @@ class Cut(Protocol):
 
 
 class JointPairs(NamedTuple):
-    """Pairs of nodes of joints that have one law, joint by joint and piece by piece.
+    """Pairs of nodes of joints of one law, joint by joint and piece by piece.
 
     Attributes
     ----------
     names
         Names of the joints.
     pieces
-        Numbers of the pieces of these joints.
+        Indices of the pieces of these joints.
     counts
         Number of pairs of each piece, (n_pieces,).
     joints
         Place of the joint of each pair in `names`, ascending, (n_pairs,).
     places
-        Number of the node of each pair along its joint, (n_pairs,).
+        Index of the node of each pair along its joint, (n_pairs,).
     weights
         Tributary area of each pair for a metre of thickness, (n_pairs,), m^2.
     tangent, normal
@@ -102,7 +102,7 @@ class JointPairs(NamedTuple):
 
     @classmethod
     def of(cls, cut: Cut, numbers: Sequence[int]) -> JointPairs:
-        """Pairs of joints by number, ascending."""
+        """Pairs of joints by index, ascending."""
         owners = np.array([piece.joint for piece in cut.pieces])
         chosen = np.flatnonzero(np.isin(owners, numbers)).tolist()
         pieces = [cut.pieces[number] for number in chosen]
@@ -123,13 +123,13 @@ class JointPairs(NamedTuple):
 def _components(
     cut: Cut, numbers: Sequence[int], counts: Indices
 ) -> tuple[Component, Component | None]:
-    """Rows along and across pieces, by their numbers and counts of pairs, (n,).
+    """Components along and across pieces, from indices and counts of pairs, (n,).
 
     There are none across where parts have rows of one component.
     """
     pieces = [cut.pieces[number] for number in numbers]
     along = np.repeat([piece.along for piece in pieces], counts)
-    # Numbers of the pairs of each piece within it.
+    # Indices of the pairs of each piece within it.
     within = np.arange(len(along)) - np.repeat(np.cumsum(counts) - counts, counts)
     tangential = list[Indices]()
     across = list[Indices]()
@@ -150,7 +150,7 @@ def _components(
 
 
 class Surface(NamedTuple):
-    """Friction and opening of the pairs of joints, along these.
+    """Friction and opening at the pairs of joints.
 
     Attributes
     ----------
@@ -261,7 +261,7 @@ def _friction(pairs: JointPairs, surface: Surface, scales: Scales) -> Friction:
 
 
 def _beside_each_other(blocks: Sequence[Array]) -> sparse.csr_array | None:
-    """Diagonal matrix of blocks, (n_rows, n_columns) each; None without any column."""
+    """Block-diagonal matrix of blocks, (n_rows, n_columns) each; None if empty."""
     heights = np.array([block.shape[0] for block in blocks])
     widths = np.array([block.shape[1] for block in blocks])
     if not widths.any():

@@ -24,7 +24,7 @@ ON_AXIS = 1e-12
 
 
 def snapped(vectors: Array) -> Array:
-    """Unit vectors, (n, 2), of which those along an axis are that exactly."""
+    """Unit vectors, (n, 2), rounded to an axis if they are along it."""
     vectors = np.where(np.abs(vectors) <= ON_AXIS, 0.0, vectors)
     x, y = vectors.T
     sizes = np.sqrt(x * x + y * y)
@@ -41,12 +41,12 @@ class NodeFrames:
     Attributes
     ----------
     first_nodes
-        Number of the first node of each body, (n_bodies + 1,).
+        Index of the first node of each body, (n_bodies + 1,).
     frames
         The first and the second direction at every node, in global axes, (n_nodes, 2,
         2).
     first_pairs
-        Number of the first pair of each joint, (n_joints + 1,).
+        Index of the first pair of each joint, (n_joints + 1,).
     has_pair
         Which pairs of the joints there are, (n_pairs,). None where directions differ,
         and where both sides are held across the joint, so that any pressing force would
@@ -81,7 +81,7 @@ class NodeFrames:
         self.has_pair = self._pairs_there(pairs.above, pairs.below, normals)
 
     def _turn(self, nodes: Indices, normals: Array) -> None:
-        """Turn nodes, (n,), into the frame of their first joint; normals are (n, 2)."""
+        """Turn frames of nodes, (n,), to the normals, (n, 2), of their first joint."""
         tangents = np.stack([normals[:, 1], -normals[:, 0]], axis=1)
         wanted = np.stack([tangents, normals], axis=1)
         # What is written last stays.
@@ -91,7 +91,7 @@ class NodeFrames:
         self._of_joint[nodes] = True
 
     def _hold(self) -> None:
-        """Turn held nodes back to the global axes, unless theirs are axes already."""
+        """Turn the frames of held nodes back to the global axes."""
         held = np.flatnonzero(self._held.any(axis=1))
         is_axis = np.abs(self.frames[held]).max(axis=1) == 1.0
         is_skew = (self._held[held] & ~is_axis).any(axis=1)
@@ -100,7 +100,7 @@ class NodeFrames:
         self.frames[turned_back] = np.eye(2)
 
     def _pairs_there(self, above: Indices, below: Indices, normals: Array) -> Flags:
-        """Check which pairs there are, (n,), of nodes above and below, (n,) both.
+        """Mask of the pairs, (n,), that are kept, of nodes above and below, (n,) both.
 
         Normals are (n, 2); the node below is -1 on a support.
         """
@@ -177,7 +177,7 @@ def pieces_of(
 def _of_joint(
     piece: JointPiece, number: int, joint: Joint, first_parts: Sequence[int]
 ) -> JointPiece:
-    """The piece of a joint, by its number, that is like one with parts of bodies."""
+    """Copy of a piece for another joint, with the parts of that joint's bodies."""
     parts: tuple[int, ...] = (first_parts[joint.above] + piece.parts[0],)
     if joint.below is not None:
         parts = parts[0], first_parts[joint.below] + piece.parts[1]
@@ -208,7 +208,7 @@ def _pieces_of_joint(
 
 
 def _paired(piece: JointPiece, has_pair: Flags) -> JointPiece:
-    """A piece without some pairs, whose length goes to the nearest that are left."""
+    """A piece without some pairs; their lengths go to the nearest other pairs."""
     if has_pair.all():
         return piece
     kept = np.flatnonzero(has_pair)

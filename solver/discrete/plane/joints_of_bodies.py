@@ -21,7 +21,7 @@ are pressed together and bent take 6 iterations to 1 % of the contact force, six
 
 
 def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
-    """Law of joints by number: all on a support, or all between bodies."""
+    """Law of joints by index: all on a support, or all between bodies."""
     joints = [cut.structure.joints[number] for number in numbers]
     pairs = JointPairs.of(cut, numbers)
     sizes = [len(joint.nodes) for joint in joints]
@@ -40,7 +40,7 @@ def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
 
 
 def _positions(cut: CutBodies, numbers: Sequence[int]) -> Array:
-    """Distance of the nodes of joints from the first of each, (n_nodes,), m."""
+    """Distance of the nodes of joints from the first node of each, (n_nodes,), m."""
     structure = cut.structure
     known = dict[int, Array]()
     found = []
@@ -55,7 +55,7 @@ def _positions(cut: CutBodies, numbers: Sequence[int]) -> Array:
 
 
 def _distances(nodes: Array) -> Array:
-    """Distance of nodes, (n, 2), from the first along the line of them, (n,)."""
+    """Distance of nodes, (n, 2), m, from the first along their line, (n,), m."""
     steps = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
     return np.cumsum(np.append(0.0, steps))
 
@@ -94,7 +94,7 @@ def _stiffness_beside(
 
 
 def _resting_lines(cut: CutBodies) -> Indices:
-    """Number of joints of lines alone if lines rest on lines; 0 at others: (n_joints,).
+    """Number of joints between lines only, (n_joints,); 0 at joints with a mesh.
 
     Of belts and leaves that all lie on supports of their own it is 0, too.
     """
@@ -121,7 +121,7 @@ def _rows_of(pairs: JointPairs) -> Indices:
 def _whole_joints(
     cut: CutBodies, bodies: Sequence[int], lengths: Array, *, on_support: bool
 ) -> tuple[Array, Array]:
-    """Stiffness of bodies on a side of whole joints: as a whole, and squeezed.
+    """Stiffness of bodies on one side of whole joints: in shear, and squeezed.
 
     `bodies` are their numbers, joint by joint, `lengths` those of the joints, m; shape
     (n_joints,) all, the stiffnesses scaled.

@@ -120,14 +120,14 @@ class Mesh:
 
     @cached_property
     def _edge_keys(self) -> tuple[Array, Indices]:
-        """Sorted keys of the edges by their corners, and their numbers, (n_edges,)."""
+        """Sorted keys of the edges by their corners, and their indices, (n_edges,)."""
         low, high = np.sort(self.grid.facets, axis=0)
         keys = low * len(self.corners) + high
         order = np.argsort(keys)
         return keys[order], order
 
     def _edges_between(self, corners: Indices) -> Indices | None:
-        """Numbers of the edges between corners in turn, (n - 1,); None without one."""
+        """Indices of the edges between corners in turn, (n - 1,); None without one."""
         low, high = np.sort([corners[:-1], corners[1:]], axis=0)
         keys, numbers = self._edge_keys
         wanted = low * len(self.corners) + high
@@ -159,7 +159,7 @@ class Mesh:
         return nodes
 
     def edges_of(self, chain: Indices) -> Indices | None:
-        """Numbers of the edges of a chain, (n_edges,); None if it is no chain."""
+        """Indices of the edges of a chain, (n_edges,); None if it is no chain."""
         if len(chain) < 3 or len(chain) % 2 == 0 or chain[::2].max() >= self.n_corners:
             return None
         edges = self._edges_between(chain[::2])
@@ -168,7 +168,7 @@ class Mesh:
         return edges
 
     def chains_of(self, nodes: Indices) -> list[Indices]:
-        """Chains of edges, (n,) each, that nodes make one after the other.
+        """Chains of edges, (n,) each, along consecutive nodes.
 
         Both ends of a plate are two chains, say. Nodes make none, [], if some of them
         belong to no chain.
@@ -207,7 +207,7 @@ class Mesh:
         return self.elements[:, [0, 1, 2, -1]]
 
     def elements_at(self, edges: Indices) -> Indices:
-        """Element at each edge, (n,); of two the first."""
+        """Element at each edge, (n,); the first one at an inner edge."""
         return np.asarray(self.grid.f2t[0, edges], dtype=np.intp)
 
     def steps(self, chain: Indices) -> tuple[Indices, Array]:
@@ -245,7 +245,7 @@ class Mesh:
         return on_nodes(lengths, SIMPSON)
 
     def outward(self, chain: Indices) -> Array:
-        """Normals out of the elements times `shares` along a chain, shape (n, 2), m."""
+        """Normals out of the elements along a chain, times `shares`, (n, 2), m."""
         edges = self.edges_of(chain)
         assert edges is not None
         ends = self.nodes[chain[::2]]
@@ -283,7 +283,7 @@ class Mesh:
         return np.asarray(self.grid.f2t[:, self.grid.f2t[1] >= 0], dtype=np.intp)
 
     def pieces(self, labels: Indices) -> Indices:
-        """Number of the piece of every element, (n_elements,).
+        """Index of the piece of every element, (n_elements,).
 
         Elements of a piece hang together by edges, and have one label, (n_elements,).
         """

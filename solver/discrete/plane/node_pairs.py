@@ -1,4 +1,4 @@
-"""Pairs of nodes of all joints as arrays: joint by joint, node by node of each."""
+"""Pairs of nodes of all joints as arrays, in the order of joints and their nodes."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from solver.discrete.plane.body import Body, Joint
 
 
 class NodePairs(NamedTuple):
-    """Pairs of nodes of all joints. Nodes of all bodies follow each other.
+    """Pairs of nodes of all joints, as indices of the nodes of all bodies.
 
     Attributes
     ----------
     first
-        Numbers of the first pair of each joint, and of the pairs, (n_joints + 1,).
+        Indices of the first pair of each joint, and of the pairs, (n_joints + 1,).
     above, below
         Nodes of each pair, (n_pairs,); that below is -1 on a support.
     normals
@@ -50,12 +50,12 @@ class NodePairs(NamedTuple):
 
     @property
     def joints(self) -> Indices:
-        """Number of the joint of each pair, ascending, (n_pairs,)."""
+        """Index of the joint of each pair, ascending, (n_pairs,)."""
         return np.repeat(np.arange(len(self.first) - 1), np.diff(self.first))
 
 
 def kinds_of(bodies: Sequence[Body], joints: Sequence[Joint]) -> list[int]:
-    """Number of the kind of each joint, (n_joints,).
+    """Index of the kind of each joint, (n_joints,).
 
     Joints of one kind are along equal chains of nodes of the same shapes, which are cut
     alike.
@@ -87,7 +87,7 @@ def _nodes_of(sides: Sequence[tuple[int, Indices]], first_nodes: Indices) -> Ind
 
 
 def along_joints(values: Sequence[Array | float], sizes: Sequence[int]) -> Array:
-    """Values of joints of these sizes, node by node: (n_nodes,)."""
+    """Values of joints, repeated for the nodes of each joint: (n_nodes,)."""
     constants = [value for value in values if isinstance(value, float)]
     if len(constants) == len(values):
         return np.repeat(constants, sizes)

@@ -1,4 +1,4 @@
-"""Operators of parts of shapes, which parts alike share."""
+"""Operators of parts of shapes; equal parts share one operator."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class PartNodes(NamedTuple):
     Attributes
     ----------
     nodes
-        Numbers of its nodes among those of all bodies, (n_nodes,).
+        Indices of its nodes among those of all bodies, (n_nodes,).
     turned
         Key of the directions of its degrees of freedom in the axes of its body.
     frames
@@ -44,7 +44,7 @@ class PartNodes(NamedTuple):
 
 
 class SharedOperators:
-    """Operators of parts of shapes, which parts alike share.
+    """Operators of parts of shapes; equal parts share one operator.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class SharedOperators:
     def of(
         self, part: ShapePart, on_nodes: PartNodes, traces: Sequence[Trace]
     ) -> Operator:
-        """Operator of a part with boundary rows, the same for parts alike.
+        """Operator of a part with boundary rows; equal parts get the same object.
 
         Members of a group of parts have forces inside all or none of them.
         """
@@ -91,13 +91,13 @@ class SharedOperators:
         return self._operators[alike]
 
     def turned(self, nodes: Indices) -> list[bytes]:
-        """Directions at nodes of parts, (n_parts, n_nodes), as keys of the parts."""
+        """Keys of the directions at the nodes of parts, (n_parts, n_nodes)."""
         return [of_part.tobytes() for of_part in self._rounded[nodes]]
 
     def _condensed(
         self, part: ShapePart, frames: Array, kept: Indices
     ) -> SchurComplement:
-        """Stiffness of a part condensed onto degrees of freedom that are kept, (n,).
+        """Stiffness of a part condensed onto some degrees of freedom, (n,).
 
         `frames` are the directions at its nodes in its axes, (n_nodes, 2, 2). What lies
         below a joint has directions that are turned round from those above: both are
@@ -122,6 +122,6 @@ class SharedOperators:
 
 
 def _rounded(values: Array) -> Array:
-    """Values of any shape up to rounding, for a key."""
+    """Values of any shape, rounded, for a key."""
     # Zero is added so that -0 is 0.
     return np.asarray(np.round(values, DIGITS) + 0.0)

@@ -158,7 +158,7 @@ class CutRods:
         )
 
     def _content(self) -> Hashable:
-        """Data on which the substructures depend: friction and its laws do not."""
+        """Digest of the data on which substructures depend: all except friction."""
         contents = {id(rods): content_without_friction(rods) for rods in self._rods}
         return (
             "substructures of rods",
@@ -169,7 +169,7 @@ class CutRods:
         )
 
     def _parts(self) -> RodPieces:
-        """All substructures, rod after rod, which are kept between runs."""
+        """All substructures, rod after rod, from the cache if possible."""
         # Pieces of equal operators share them, also those of different rods.
         shared: dict[tuple[object, ...], Elasticity] = {}
         substructures = list[Substructure]()
@@ -180,7 +180,7 @@ class CutRods:
     def _substructures(
         self, rod: int, shared: dict[tuple[object, ...], Elasticity]
     ) -> Iterator[Substructure]:
-        """Substructures of a rod from left to right; `shared` are operators so far."""
+        """Substructures of a rod from left to right; `shared` are earlier operators."""
         rods = self._rods[rod]
         stiffness = self._stiffness(rods)
         free_force = _free_force(rods, stiffness)
@@ -222,7 +222,7 @@ class CutRods:
         springs: Mapping[int, End],
         is_row: NDArray[np.bool_],
     ) -> tuple[object, ...]:
-        """Data on which the operator of a piece depends; arguments as `_operator`."""
+        """Cache key of the operator of a piece; parameters as `_operator`."""
         unit = self._scales.force / self._scales.displacement
         return (
             "rod",
@@ -233,7 +233,7 @@ class CutRods:
         )
 
     def _rows(self, rod: int, piece: Piece) -> Indices:
-        """Boundary rows of a piece, or NO_ROW, (n,): of contacts, then of both ends."""
+        """Boundary rows of a piece, (n,), or NO_ROW: of contacts, then of both ends."""
         at_sides = self._sides[self._sides_of(rod), piece.nodes]
         return np.concatenate([at_sides.ravel(), self._ends[:, piece.number, rod]])
 
@@ -300,7 +300,7 @@ class CutRods:
         springs: Mapping[int, End],
         is_row: NDArray[np.bool_],
     ) -> Elasticity:
-        """Operator of a piece, which is kept between runs (`solver.cache`).
+        """Operator of a piece, from the cache if possible (`solver.cache`).
 
         `stiffness` is ES of the elements of the rod, (n_elements,), scaled; `springs`
         hold nodes of the piece; `is_row` says which boundary rows there are, (n,), of
@@ -368,7 +368,7 @@ class CutRods:
         return Neumann(rows, pulled, np.eye(len(rows)))
 
     def _friction(self, rod: int, copies: float) -> Contact:
-        """Contact of a rod with its support, or the rod before it; it has `copies`."""
+        """Contact law of a rod with its support, or with the rod before it."""
         rods = self._rods[rod]
         units = (self._scales.displacement, self._scales.force)
         macro = None
@@ -407,7 +407,7 @@ class CutRods:
         return sparse.csr_array(block_diag(*bases))
 
     def _points(self, rod: int) -> Indices:
-        """Point of each pair of the contact of a rod, (n_pairs,), from 0.
+        """Index of the point of each pair of a rod's contact, (n_pairs,).
 
         Where the rod or the one before it is broken there are two points.
         """
@@ -417,7 +417,7 @@ class CutRods:
         return np.asarray(nodes - nodes[0] + beyond[piece])
 
     def _stiffness_at_nodes(self, rods: Rods) -> Array:
-        """ES around each node of a rod, (n_nodes,), scaled, per length of the rod.
+        """ES around each node of a rod, (n_nodes,), scaled, over the rod's length.
 
         Around a node are half an element on either side, in series.
         """
@@ -427,7 +427,7 @@ class CutRods:
 
 
 def _free_force(rods: Rods, stiffness: Array) -> Array | None:
-    """Axial force of elements that would strain them as heat or settlement does.
+    """Axial force equivalent to the strains of heat and settlement in elements.
 
     Shape (n_elements, n_instants), scaled as `stiffness`, (n_elements,); None where
     nothing strains them.
@@ -446,7 +446,7 @@ def _free_force(rods: Rods, stiffness: Array) -> Array | None:
 
 
 def _seen(rods: Rods, end: End, node: int) -> Array:
-    """Displacement of what holds an end, relative to the support, (n_instants,), m."""
+    """Displacement of an end's clamp or spring relative to the support, m."""
     assert end.displacement is not None
     if rods.settlement is None:
         return end.displacement

@@ -1,4 +1,4 @@
-"""Pieces of rods: where rods are cut, and all that is kept of pieces between runs."""
+"""Pieces of rods: where rods are cut, and the substructures cached between runs."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Piece(NamedTuple):
 
     @property
     def nodes(self) -> slice:
-        """Nodes of the piece, among those of all pieces (a cut's are there twice)."""
+        """Nodes of the piece, among those of all pieces (nodes of cuts count twice)."""
         first = self.first + self.number
         return slice(first, first + self.size + 1)
 
@@ -63,12 +63,12 @@ class Piece(NamedTuple):
         }
 
     def _is_held(self, node: int, end: End) -> bool:
-        """Check whether an end of the rod is at a node of the piece, on a spring."""
+        """Check whether a node of the piece is an end of the rod on a spring."""
         return end.is_on_spring and self.first <= node <= self.first + self.size
 
 
 class RodPieces:
-    """Substructures of all rods, rod after rod, and what is kept of them between runs.
+    """Substructures of all rods, rod after rod, as cached between runs.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class RodPieces:
 
 
 def content_without_friction(data: Rods | End) -> Hashable:
-    """Values of all fields but those of friction, arrays by their digests.
+    """Values of all fields except those of friction; of arrays their digests.
 
     Substructures that are kept between runs depend on these alone.
     """

@@ -307,7 +307,7 @@ class Rods:
         return replace(moved, constant=moved.constant + spring * end.displacement)
 
     def _moved(self, problem: Problem, side: EndName) -> Probe:
-        """Mean displacement of the ends of a side, not relative to the support, m."""
+        """Absolute mean displacement of the ends of a side, m."""
         rows = problem.interfaces[SIDES[side]].rows
         node = 0 if side == "left" else -1
         if self.settlement is None:
@@ -330,7 +330,7 @@ class Rods:
 
     @property
     def _drive(self) -> tuple[str, str, Array] | None:
-        """Title, unit and values of a load along the rods; None without any.
+        """Title, unit and values of a distributed load along the rods, or None.
 
         Values, (n_instants,), are those at the place where they are largest.
         """
@@ -362,7 +362,7 @@ class Rods:
         )
 
     def _acts(self) -> Iterator[Act]:
-        """Loads and motions of the ends, along the rods, and of the pressure."""
+        """Arrows of loads and motions of the ends, of loads along rods, of pressure."""
         yield from self._acts_at_ends()
         right = OUTWARD["right"]
         shown = np.rint(SHOWN * self.elements).astype(np.intp)
@@ -385,7 +385,7 @@ class Rods:
             yield Act("top y", "p", places, OUTWARD["bottom"], self.pressure, "N/m")
 
     def _acts_at_ends(self) -> Iterator[Act]:
-        """Forces on the ends, and displacements of what holds them."""
+        """Arrows of forces on the ends, and of displacements of their supports."""
         right = OUTWARD["right"]
         shown = self.wires if self.wires <= SEVERAL else 1
         heights = (np.arange(shown) + 0.5) / shown
@@ -398,7 +398,7 @@ class Rods:
                 yield Act(f"{side} x", "F", places, right, end.force, "N")
 
     def _holds(self) -> Iterator[Hold]:
-        """Springs and clamps of the ends, and the support where a single rod rubs."""
+        """Springs and clamps of the ends, and the support of a single rod."""
         for side, end in self.ends.items():
             if end.is_on_spring:
                 yield Hold("spring", side, moved=end.displacement)

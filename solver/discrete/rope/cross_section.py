@@ -88,7 +88,7 @@ class CrossSection:
             raise RefusedError("CrossSection", self.rows, allowed, remedy)
 
     def _remedy(self) -> str:
-        """Remedy for rows that make no strand, or "" for a strand."""
+        """Remedy for rows that are no possible strand, else ""."""
         if self.core.wires != 1 or self.core.lay:
             return "row 1 is the core: give it 1 wire and a lay angle of 0°"
         if not self.layers:
@@ -120,7 +120,7 @@ class CrossSection:
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
-        """Radius of the helix of every layer, m: each lies on what is below."""
+        """Radius of the helix of every layer, m: each lies on the layer below."""
         radii = []
         outer = 0.5 * self.core.diameter
         for layer in self.layers:
@@ -129,7 +129,7 @@ class CrossSection:
         return tuple(radii)
 
     def smallest_radius(self, layer: int) -> float:
-        """Radius of the helix on which the wires of a layer would touch each other, m.
+        """Smallest radius of a layer's helix, at which its wires touch each other, m.
 
         Cut across the strand a wire is an ellipse, wider by 1 / cos(alpha) (Costello,
         chapter 2).
@@ -142,7 +142,7 @@ class CrossSection:
 
     @property
     def rows(self) -> tuple[tuple[float, float, float, float], ...]:
-        """Wires, diameter, m, lay angle, degrees, modulus, Pa, inside out."""
+        """Rows (wires, diameter, m, lay angle, degrees, modulus, Pa), inside out."""
         rows = []
         for layer in (self.core, *self.layers):
             # Rounded, as an angle that was given in degrees has no more digits.
@@ -170,7 +170,7 @@ class CrossSection:
 
     @cached_property
     def slipping_bending(self) -> float:
-        """Bending stiffness of slipping wires about own axes, E I cos(alpha), N m^2."""
+        """Bending stiffness of slipping wires, sum of E I cos(alpha), N m^2."""
         total = 0.0
         for layer in (self.core, *self.layers):
             bending = layer.wires * layer.young * np.pi * layer.diameter**4 / 64.0
@@ -179,7 +179,7 @@ class CrossSection:
 
     @cached_property
     def stuck_bending(self) -> float:
-        """Bending stiffness while nothing slips, N m^2."""
+        """Bending stiffness while all wires stick, N m^2."""
         together = 0.0
         for layer, radius in zip(self.layers, self.radii, strict=True):
             stiffness = 0.5 * layer.wires * layer.stiffness
@@ -187,7 +187,7 @@ class CrossSection:
         return self.slipping_bending + float(together)
 
     def wire_tension(self, layer: int, tension: Array) -> Array:
-        """Force in a wire of a layer under a tension of the strand, of its shape, N."""
+        """Force in a wire of a layer under a tension of the strand, N, of its shape."""
         wire = self.layers[layer]
         share = wire.stiffness * np.cos(wire.lay) ** 2 / self.stiffness
         return np.asarray(share * tension)
@@ -220,7 +220,7 @@ class CrossSection:
     def friction_strengths(
         self, tension: Array, friction: float, factors: Array
     ) -> Array:
-        """Friction strengths of the wires of every layer, from below and above, N/m.
+        """Friction strength of the wires of every layer, from below and above, N/m.
 
         Shape (n_layers, n_instants), per metre of wire, under the tension of the
         strand, (n_instants,), N; `factors` are mu of every layer on what it lies on

@@ -1,4 +1,4 @@
-"""Discrete problem of a strand: its wires as rods on supports of their own."""
+"""Discrete problem of a strand: each wire is a rod on a separate support."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def problem_of(rope: Rope) -> Problem:
 
 
 def _copies(rope: Rope, wire: RopeWire) -> float:
-    """Number of interfaces of a wire that its own stands for."""
+    """Number of equal interfaces that a wire's interface represents."""
     if rope.is_clamped:
         return 1.0
     # The drawn strand has several half turns of each wire, which all count.

@@ -1,4 +1,4 @@
-"""A bent strand of helical wires: rods, each on a support that bending stretches.
+"""A bent strand of helical wires: rods, each on a support that bending strains.
 
 Plane sections of the strand stay plane, so a curvature kappa stretches the support of a
 wire by kappa R cos^2(alpha) cos(theta) along the wire, with theta the polar angle at
@@ -60,7 +60,7 @@ class RopeWire:
     Attributes
     ----------
     layer, number
-        Number of the layer, inside out, and of the wire around it, from 0.
+        Index of the layer, inside out, and of the wire around it, from 0.
     layer_data
         The wire's layer: diameter, modulus and lay.
     radius, start, length
@@ -121,7 +121,7 @@ class RopeWire:
 
     @cached_property
     def angle(self) -> Array:
-        """Theta at the nodes, shape (n_nodes,), rad."""
+        """Polar angle theta of the nodes, shape (n_nodes,), rad."""
         return np.asarray(
             self.start + self.arc * np.sin(self.layer_data.lay) / self.radius
         )
@@ -140,7 +140,7 @@ class RopeWire:
         return np.asarray(per_curvature[:, None] * self.curvature[:, columns])
 
     def body_force(self) -> Array:
-        """Force per length that has the effect of the support's stretch.
+        """Force per length equivalent to the strain of the support.
 
         That is d/ds(E A kappa R cos^2(alpha) cos(theta)), a change of curvature along
         the wire included, in differences of the elements' forces: equilibrium holds
@@ -238,7 +238,7 @@ class Rope:
 
     @property
     def drawn_length(self) -> float:
-        """Length of the strand that is drawn, m: of its wires, or of a turn."""
+        """Length of the drawn part of the strand, m: of its wires, or of one turn."""
         longest = max(float(wire.along[-1]) for wire in self.wires)
         if self.is_clamped:
             return longest

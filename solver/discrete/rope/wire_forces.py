@@ -57,7 +57,7 @@ def cut_at(rope: Rope, position: float) -> CutWires:
 def _cut_wire(
     wire: RopeWire, position: float, *, is_clamped: bool
 ) -> tuple[Array, Array, Array]:
-    """Section of the wires that a wire stands for, at a position along the strand, m.
+    """Section of the wires that a wire represents, at a position along the strand, m.
 
     Returns
     -------
@@ -80,7 +80,7 @@ def _cut_wire(
 
 
 def wire_forces(rope: Rope, displacement: Array, columns: slice | Indices) -> Array:
-    """Forces in the elements of all wires: their tension and what bending adds.
+    """Forces in the elements of all wires: of the tension and of bending.
 
     Shape (n_wires, n_elements, n_columns), N, from the displacement of the problem's
     degrees of freedom, (n_dofs, n_instants), m, at some of the instants.
@@ -95,7 +95,7 @@ def wire_forces(rope: Rope, displacement: Array, columns: slice | Indices) -> Ar
 
 
 def wire_stresses(rope: Rope, displacement: Array, columns: slice | Indices) -> Array:
-    """Mean stresses over the wires' sections, Pa, of the shape of `wire_forces`."""
+    """Mean stresses over the sections of wires, Pa, of the shape of `wire_forces`."""
     areas = np.array([wire.layer_data.area for wire in rope.wires])
     return np.asarray(wire_forces(rope, displacement, columns) / areas[:, None, None])
 

@@ -58,7 +58,7 @@ class SearchDirection(ABC):
     def begin(
         self, problem: Problem, start: Checkpoint | None, waves: float = math.inf
     ) -> UpdateProgress:
-        """State of the k update at the start of a run, which may go on from another.
+        """State of the k update at the start of a run, or of a resumed run.
 
         `waves` is the length of the longest waves that a start from a coarser mesh
         leaves wrong, m.
@@ -66,7 +66,7 @@ class SearchDirection(ABC):
         return UpdateProgress("returned", self.of(problem))
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
-        """State of the k update after an iteration, with the k of the next."""
+        """State of the k update after an iteration, with the next iteration's k."""
         return progress
 
 
@@ -81,7 +81,7 @@ class Paper(SearchDirection):
 
 @dataclass(frozen=True)
 class Auto(SearchDirection):
-    """Automatic k, which needs no tuning, and becomes larger if no bodies slip.
+    """Automatic k without tuning; larger between bodies that do not slip.
 
     A small k suits points that slip: there friction is known, and the position is
     sought. A point that has never slipped has its position from the start, and its
@@ -117,7 +117,7 @@ class Auto(SearchDirection):
         return UpdateProgress("returned", self.of(problem))
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
-        """State of the k update, which ends in the third iteration.
+        """State of the k update, which is complete in the third iteration.
 
         k stays if any bodies slip on each other then.
         """
@@ -133,7 +133,7 @@ class Auto(SearchDirection):
 
 
 def _slips_between_bodies(iterate: Iterate) -> bool:
-    """Check whether bodies slip on each other anywhere, by the local stage."""
+    """Check whether any bodies slip on each other in the local stage."""
     moved = iterate.local_displacement
     force = iterate.boundary_local_force
     for group in iterate.problem.contacts.groups:
@@ -147,7 +147,7 @@ def _slips_between_bodies(iterate: Iterate) -> bool:
 def automatic(
     problem: Problem, *, sticks: bool = False, waves: float = math.inf
 ) -> Array:
-    """Search direction k of every row by a rule that needs no tuning.
+    """Search direction k of every row by the automatic rule.
 
     Where bodies rub, k is that of `solver.laws.stiffness`, in series with the spring of
     a contact that gives way before it slips; elsewhere it is the paper's k times a
@@ -192,7 +192,7 @@ def automatic(
 
 
 def _sliding_parts(problem: Problem) -> float:
-    """Number of interfaces that slide, over the share of one of them that slides."""
+    """Number of sliding interfaces over the share of each that slides."""
     laws = problem.contacts.laws.values()
     # Rods on supports of their own slide all alike; of those beside each other one
     # slides far.

@@ -32,7 +32,7 @@ than in the one before."""
 
 @dataclass(frozen=True)
 class FromStatus:
-    """Search direction that follows the contact status, once that has settled.
+    """Search direction that follows the contact status once it no longer changes.
 
     k(x, t) has a separated form: a profile in x from the status, constant in t. A
     slipping point carries its bound whatever its position, so the small k that leaves
@@ -74,7 +74,7 @@ class FromStatus:
         return UpdateProgress("returned", self.of(problem))
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
-        """State of the k update after an iteration, with the k of the next."""
+        """State of the k update after an iteration, with the next iteration's k."""
         if progress.state == "first":
             return self._until_settled(iterate, progress)
         return self._on_trial(iterate, progress)
@@ -82,7 +82,7 @@ class FromStatus:
     def _until_settled(
         self, iterate: Iterate, progress: UpdateProgress
     ) -> UpdateProgress:
-        """State of the first k, which is updated once the status has settled."""
+        """State of the first k: updated once the status no longer changes."""
         status = _crept(iterate)
         before = progress.status
         count = 0
@@ -97,7 +97,7 @@ class FromStatus:
         return UpdateProgress("updated", k, fields=fields, violation=violation)
 
     def _on_trial(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
-        """State of an updated k, which stays while the violation of the laws falls."""
+        """State of an updated k: kept while the violation of the laws falls."""
         count = progress.count + 1
         if count < TRIAL:
             return replace(progress, status=None, count=count)

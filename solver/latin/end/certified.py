@@ -1,4 +1,4 @@
-"""The certified answer of a run, and how its fields follow from a solution."""
+"""The certified answer of a run, with all fields of a solution."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ a dozen suffice."""
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Answer(Iterate):
-    """Certified answer of a run: an iterate whose fields obey all laws and equilibrium.
+    """Certified answer of a run: an iterate that obeys equilibrium and all laws.
 
     Both stages agree in it, so that it is a fixed point of the method for every k. Its
     bases are those of the search that led to it, and do not hold all of it.
@@ -46,12 +46,12 @@ class Answer(Iterate):
 
     @property
     def iterations(self) -> int:
-        """Number of iterations done, without an answer that stands beside them."""
+        """Number of iterations done, not counting an answer that is no iteration."""
         return self.number - self.is_beside
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """State from which the iteration goes on, in full fields."""
+        """State from which the iteration can be resumed, in full fields."""
         return replace(super().checkpoint, bases=())
 
     @property
@@ -73,7 +73,7 @@ def certified_answer(
     *,
     is_beside: bool = False,
 ) -> Answer:
-    """Answer of a run by the certified solution of a status step.
+    """Answer of a run from the certified solution of a status step.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def certified_answer(
 
 
 def answer_of_iterate(iterate: Iterate, residual: float, *, is_beside: bool) -> Answer:
-    """Answer of a run whose iterate is a solution by itself, by its KKT residual."""
+    """Answer of a run from an iterate that is itself a solution, by KKT residual."""
     return Answer(
         number=iterate.number + 1,
         seconds=iterate.seconds,
@@ -143,7 +143,7 @@ def _field(values: Array) -> Array:
 
 
 def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> Array:
-    """Forces of rows, shared out from those on the boundary of every substructure.
+    """Forces of rows, distributed from those at boundary points of substructures.
 
     The forces of contacts and loads are known. The rest of the force that the
     elasticity of a substructure needs at a degree of freedom is carried by its other
@@ -189,7 +189,7 @@ def _sum_of_sides(problem: Problem) -> sparse.csr_array:
 def known_forces(
     problem: Problem, contact_force: Array
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """Forces of rows that rub or are loaded.
+    """Known forces of rows: contact forces and prescribed loads.
 
     Parameters
     ----------
@@ -221,7 +221,7 @@ def known_forces(
 def balance_of_rows(
     problem: Problem, displacement: Array
 ) -> tuple[sparse.csr_array, Array]:
-    """Sum of the forces of rows at every boundary point, and the forces needed there.
+    """Matrix of sums of row forces at boundary points, and the required sums.
 
     `displacement` has shape (n_dofs, n_instants), scaled. With n points on the
     boundaries of all substructures, the sum has shape (n, n_rows), and the needed
@@ -248,7 +248,7 @@ def balance_of_rows(
 
 
 def _smallest(system: sparse.csr_array, right: Array) -> Array:
-    """Smallest x with A x = b, by conjugate gradients on A A^T, all columns together.
+    """Minimum-norm x with A x = b, by conjugate gradients on A A^T, for all columns.
 
     A has shape (m, n), b shape (m, n_instants), x shape (n, n_instants).
     """

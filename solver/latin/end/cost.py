@@ -69,7 +69,7 @@ LARGE = 1e9
 
 
 class PricedMethod(Protocol):
-    """Parts of a method that its cost depends on: a `solver.latin.Latin`."""
+    """Parts of a method that determine its cost: a `solver.latin.Latin`."""
 
     @property
     def linear(self) -> object:
@@ -122,7 +122,7 @@ class Costs:
 
     @property
     def step(self) -> float:
-        """Time of a status step whose statuses are right, s."""
+        """Time of a status step that starts from correct statuses, s."""
         return self.condensing + self.n_instants * self.system
 
     @property
@@ -138,7 +138,7 @@ class Costs:
         return self.step <= max(iterations, AFFORDABLE) * self.whole_iteration
 
     def is_small(self, iterations: float) -> bool:
-        """Check whether even wrong statuses are worth a trial after some iterations."""
+        """Check whether even a failing status step is cheap beside some iterations."""
         if self.is_at_rest:
             # 37 of 240 random runs are at rest first: they end in 11 % fewer iterations
             # and 14 % less time so (measured).
@@ -148,7 +148,7 @@ class Costs:
         return self.incremental <= TRIED * iterations * self.iteration
 
     def systems(self, iterations: float) -> int:
-        """Number of linear systems that a step may solve instead of some iterations."""
+        """Number of linear systems with the cost of some iterations."""
         affordable = int(iterations * self.whole_iteration / self.system)
         return max(SYSTEMS * self.n_instants, affordable)
 
@@ -219,7 +219,7 @@ def _condensing_cost(problem: Problem, n_jumps: int) -> float:
 
 
 def _expected_share(problem: Problem) -> float:
-    """Share of the jumps that may move at an instant, before any iterate shows it."""
+    """Assumed share of the jumps that move at an instant, before the first iterate."""
     if problem.opens:
         return MOVING
     if not problem.contacts:
@@ -229,7 +229,7 @@ def _expected_share(problem: Problem) -> float:
 
 @dataclass(frozen=True)
 class RunCost:
-    """Estimated cost of a run, right within a factor of three.
+    """Estimated cost of a run, accurate within a factor of three.
 
     Attributes
     ----------
@@ -247,7 +247,7 @@ class RunCost:
 
     @property
     def is_large(self) -> bool:
-        """Check whether a run is so long or large that it should say so before."""
+        """Check whether a run is long or large enough for a warning."""
         return self.seconds > LONG or self.memory > LARGE
 
     def __str__(self) -> str:
@@ -326,7 +326,7 @@ def _memory(problem: Problem, *, takes_step: bool, has_reference: bool) -> float
 
 
 def _duration(seconds: float) -> str:
-    """Write seconds with one digit, as the estimate has no more."""
+    """Text of a duration in seconds with one significant digit."""
     units = ((3600.0, "h"), (60.0, "min"))
     for size, unit in units:
         if seconds >= 1.5 * size:

@@ -44,7 +44,7 @@ FEW = 10
 
 
 class ErrorEstimate:
-    """Relative error of the contact force, iterate after iterate.
+    """Estimator of the relative error of the contact force, iterate by iterate.
 
     Once a status step is certified, the error is the distance to the certified
     solution. Before, and where the step costs more than it saves, the error is
@@ -106,7 +106,7 @@ class ErrorEstimate:
         """Estimate the relative error of the next iterate of a run; NaN if unknown."""
         error = math.nan
         if self.certificate is None:
-            error = self._changes.left(iterate)
+            error = self._changes.remaining_error(iterate)
             if self._is_trial_due(iterate):
                 self.try_step(iterate)
         if self.certificate is None:
@@ -114,7 +114,7 @@ class ErrorEstimate:
         return self.certificate.distance.of_friction_force(iterate)
 
     def _is_trial_due(self, iterate: Iterate) -> bool:
-        """Check whether a status step is due, as statuses or costs promise success."""
+        """Check whether a status step is likely to succeed now, and worth its cost."""
         number = iterate.number
         if number < self._next_trial or iterate.problem.no_reference:
             return False
@@ -130,7 +130,7 @@ class ErrorEstimate:
         return self.certificate is not None
 
     def is_proven_within(self, share: float, iterate: Iterate) -> bool:
-        """Check whether an iterate is near to a certified solution.
+        """Check whether an iterate is within a share of a certified solution.
 
         `share` is the largest relative error of its displacement and contact force.
         """
@@ -142,16 +142,16 @@ class ErrorEstimate:
         return max(of_force, of_displacement) <= share
 
     def can_be_proven(self, iterate: Iterate) -> bool:
-        """Check whether a status step is worth its cost by now."""
+        """Check whether a status step is worth its cost at this iterate."""
         if iterate.problem.no_reference or not self._has_solver:
             return False
         costs = self._costs_of(iterate)
-        if costs.step > self._left():
+        if costs.step > self._time_left():
             return False
         return self.needs_proof or costs.afford(iterate.number)
 
     def try_step(self, iterate: Iterate) -> None:
-        """Try the status step, unless it costs too much by `can_be_proven`."""
+        """Try the status step, if `can_be_proven` says that it is worth its cost."""
         if not self.can_be_proven(iterate):
             return
         self._next_trial = AGAIN * iterate.number + 1
@@ -168,7 +168,7 @@ class ErrorEstimate:
             self._has_solver = False
             return
         except Interrupted:
-            if self._left() >= 0.0:
+            if self._time_left() >= 0.0:
                 self._next_trial = iterate.number + 1
             return
         self.ending = _lost_equilibrium(iterate.problem, solution)
@@ -179,15 +179,15 @@ class ErrorEstimate:
             self.certificate = certificate
 
     def _stops(self) -> bool:
-        """Check whether a status step is to be given up."""
-        return self._left() < 0.0 or self._interrupted()
+        """Check whether a status step has to stop: time is up, or the caller asks."""
+        return self._time_left() < 0.0 or self._interrupted()
 
-    def _left(self) -> float:
-        """Rest of the run's time limit, s."""
+    def _time_left(self) -> float:
+        """Time left of the run's limit, s."""
         return self.deadline - time.perf_counter()
 
     def _costs_of(self, iterate: Iterate) -> Costs:
-        """Costs by the statuses of an iterate, new at every doubling of iterations."""
+        """Costs from the statuses of an iterate, updated when iterations double."""
         if self._costs is None or iterate.number >= AGAIN * self._costs[0]:
             costs = costs_of(
                 iterate.problem, states_of(iterate), may_shift=self._may_shift
@@ -206,7 +206,7 @@ def _lost_equilibrium(problem: Problem, solution: Reference) -> Status | None:
     return None
 
 
-class _Past(NamedTuple):
+class _EarlierForces(NamedTuple):
     """Contact forces of an earlier iterate.
 
     Attributes
@@ -236,14 +236,14 @@ class ForceChanges:
     """
 
     def __init__(self) -> None:
-        self._past: list[_Past] = []
+        self._past: list[_EarlierForces] = []
         self._smallest_size = 0.0
         self._next_size = 0
         self.worst = math.nan
         self.whole = math.nan
 
-    def left(self, iterate: Iterate) -> float:
-        """Relative error that is left if changes go on to fall; NaN if unknown."""
+    def remaining_error(self, iterate: Iterate) -> float:
+        """Relative error that remains if changes continue to fall; NaN if unknown."""
         number = iterate.number
         force = _force_of(iterate)
         before = self._at(LOOK_BACK * number)
@@ -254,7 +254,7 @@ class ForceChanges:
             self.worst, self.whole = _change(
                 iterate.problem, change, force, self._smallest_size
             )
-        self._keep(_Past(number, force, self.worst), earlier)
+        self._keep(_EarlierForces(number, force, self.worst), earlier)
         if number >= self._next_size:
             self._smallest_size = _vanishing_size(iterate)
             self._next_size = AGAIN * number
@@ -262,18 +262,18 @@ class ForceChanges:
             return 0.0
         if before is None or earlier is None or number <= FEW:
             return math.nan
-        return _left(self.worst, before.worst, earlier.worst)
+        return _remaining_error(self.worst, before.worst, earlier.worst)
 
-    def _keep(self, newest: _Past, earlier: _Past | None) -> None:
-        """Keep the forces of an iterate, and forget those before the `earlier` one."""
+    def _keep(self, newest: _EarlierForces, earlier: _EarlierForces | None) -> None:
+        """Store the forces of an iterate, and drop those before the `earlier` one."""
         if earlier is not None:
             self._past = [
                 entry for entry in self._past if entry.number >= earlier.number
             ]
         self._past.append(newest)
 
-    def _at(self, number: float) -> _Past | None:
-        """Newest entry up to a number of iterations; None without one."""
+    def _at(self, number: float) -> _EarlierForces | None:
+        """Newest stored forces up to a number of iterations; None without any."""
         for entry in reversed(self._past):
             if entry.number <= number:
                 return entry
@@ -291,14 +291,14 @@ def _force_of(iterate: Iterate) -> Array:
 
 
 def _vanishing_size(iterate: Iterate) -> float:
-    """Norm of contact forces that counts as none beside other forces, scaled."""
+    """Norm of contact forces that is negligible beside other forces, scaled."""
     hidden = VANISHING * float(np.linalg.norm(iterate.boundary_force))
     rounding = ROUNDING * float(np.linalg.norm(iterate.k[:, None] * iterate.outgoing))
     return max(hidden, rounding)
 
 
-def _left(last: float, before: float, earlier: float) -> float:
-    """Relative error left by the last three changes; NaN if they do not fall."""
+def _remaining_error(last: float, before: float, earlier: float) -> float:
+    """Relative error that remains by the last three changes; NaN unless they fall."""
     fall = max(ratio(last, before), ratio(before, earlier))
     if not fall < 1.0:
         return math.nan
@@ -308,7 +308,7 @@ def _left(last: float, before: float, earlier: float) -> float:
 def _change(
     problem: Problem, change: Array, force: Array, smallest_size: float
 ) -> tuple[float, float]:
-    """Worst and whole change, over the sizes in the errors of `reference.distance`.
+    """Largest and whole change, over the sizes in the errors of `reference.distance`.
 
     Parameters
     ----------

@@ -173,7 +173,7 @@ def collapses(problem: Problem, collapse: Collapse) -> Status:
 
 
 def limit_of(problem: Problem, collapse: Collapse) -> str:
-    """Words on the last equilibrium: the loads that are carried, and the time."""
+    """Text of the last equilibrium: the loads that are carried, and the time."""
     loads = describe_limit(problem.drives, collapse.instant, collapse.share)
     time = f"from {collapse.time:.4g} s on"
     if loads:
@@ -182,7 +182,7 @@ def limit_of(problem: Problem, collapse: Collapse) -> str:
 
 
 def jump_of(problem: Problem, instant: int) -> str:
-    """Words on an instant, as after a jump: its time, and the loads there."""
+    """Text of an instant, as after a jump: its time, and the loads there."""
     loads = describe_loads(problem.drives, instant)
     time = f"{problem.instants[instant]:.4g} s"
     if loads:
@@ -197,7 +197,7 @@ def lost_jump(problem: Problem, instant: int, lost_from: int) -> Status:
 
 
 def not_found(status: Status, problem: Problem, instant: int) -> Status:
-    """Status of a run that failed, and whose status step is lost from an instant on."""
+    """Status of a run whose status step finds no equilibrium from an instant on."""
     message = _NOT_FOUND
     if problem.is_chain:
         message = _NOT_HELD
@@ -205,7 +205,7 @@ def not_found(status: Status, problem: Problem, instant: int) -> Status:
 
 
 def diverged(iteration: int) -> Status:
-    """Status of a run whose fields stopped being finite."""
+    """Status of a run whose fields are no longer finite."""
     return Status(
         Ending.DIVERGED,
         f"Numbers stopped being finite at iteration {iteration}, so that before it is "
@@ -233,14 +233,14 @@ def certified(
     if math.isnan(error):
         message += _FROM_ANOTHER
     else:
-        message += _way_to(answer, error)
+        message += _error_of_search(answer, error)
         if advice:
             message += f" {advice}"
     return with_jump(Status(Ending.CONVERGED, message), answer.problem, certificate)
 
 
-def _way_to(answer: Answer, error: float) -> str:
-    """Sentence on the last iterate before a certified solution, by its error."""
+def _error_of_search(answer: Answer, error: float) -> str:
+    """Sentence on the error of the last iterate before a certified solution."""
     before = answer.number - 1
     percent = float(f"{100.0 * error:.2g}")
     shown = f"{percent:g}"
@@ -254,7 +254,7 @@ def _way_to(answer: Answer, error: float) -> str:
 
 
 def unprovable(status: Status, problem: Problem, *, has_bases: bool) -> Status:
-    """Add to a status why there is no proof, where the problem has no reference.
+    """Add to a status why no certificate is possible, if the problem has no reference.
 
     `has_bases` says that the linear stage is on separated bases.
     """
@@ -269,7 +269,7 @@ def unprovable(status: Status, problem: Problem, *, has_bases: bool) -> Status:
 def with_jump(
     status: Status, problem: Problem, certificate: Certificate | None
 ) -> Status:
-    """Add to a status when the certified solution jumps, if it does."""
+    """Add to a status the instants at which the certified solution jumps, if any."""
     if certificate is None or certificate.solution.jumps_at is None:
         return status
     message = _JUMPED.format(jump_of(problem, certificate.solution.jumps_at))
@@ -277,7 +277,7 @@ def with_jump(
 
 
 def obeyed(residual: float) -> Status:
-    """Status of a run whose iterate is a solution by itself, with its KKT residual."""
+    """Status of a run whose iterate is itself a solution, with its KKT residual."""
     return Status(
         Ending.CONVERGED,
         f"{_CERTIFIED} in this iterate itself, which no status step had to find "
@@ -303,7 +303,7 @@ class Remedies:
 
 
 def remedies_of(*, may_finish: bool, has_bases: bool) -> Remedies:
-    """Remedies by whether a method may finish with a status step, and has bases."""
+    """Remedies for a method: with or without a status step, and bases."""
     of_k = "set finish=at-once, for which k does not matter"
     also = ", or set finish=at-once"
     if may_finish:
@@ -318,7 +318,7 @@ def remedies_of(*, may_finish: bool, has_bases: bool) -> Remedies:
 
 
 def exhausted(lack: str, remedies: Remedies, *, may_go_on: bool) -> Status:
-    """Status of a run at its limit, of iterations or seconds.
+    """Status of a run at its limit of iterations or seconds.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Status step: from the stick, slip and opening of an iterate to the solution itself.
+"""Status step: from stick, slip and opening of an iterate to the exact solution.
 
 The statuses of an iterate make the problem linear, instant after instant. Statuses that
 the linear solution shows to be wrong are corrected where they stand: a Newton method
@@ -41,7 +41,7 @@ statuses agree with it exactly; on four wires of 320 elements the linear systems
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """Solution of the discrete problem, proven by its own residual.
+    """Solution of the discrete problem, certified by its residual.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Certificate:
 
 @dataclass(frozen=True)
 class StatusStep:
-    """End of a run with the certified solution, once a status step holds.
+    """Option to end a run with the certified solution of a status step.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ def status_step(
     max_systems: int | None = None,
     stop: Callable[[], bool] | None = None,
 ) -> tuple[Reference, Certificate | None]:
-    """Correct the states of an iterate to a solution, and certify that if it is one.
+    """Correct the states of an iterate to a solution, and certify the solution.
 
     Parameters
     ----------
@@ -138,12 +138,12 @@ def states_of(iterate: Iterate) -> States:
 
 
 def states_of_solution(solution: Reference) -> States:
-    """States of a solution, as those of an iterate, (n_forces, n_instants)."""
+    """States of a solution, (n_forces, n_instants), as `states_of` of an iterate."""
     return _of_components(solution.problem, solution.status)
 
 
 def _of_components(problem: Problem, status: States) -> States:
-    """States of all components of contact, by the status of the points.
+    """States of all components of contact, from the status of the points.
 
     The status has the shape (n_points, n_instants), the states (n_forces, n_instants).
     """

@@ -63,7 +63,7 @@ at an indicator of 0.6 of it (measured)."""
 
 @dataclass(frozen=True)
 class Stop:
-    """Criteria that end a run; an infinite one is not applied.
+    """Criteria that end a run; infinite values are not applied.
 
     Accuracy and tolerance, where both are finite, have to hold together. A run ends in
     any case at its limit of iterations or seconds.
@@ -110,7 +110,7 @@ class Stop:
 
 
 class JudgedMethod(Protocol):
-    """Parts of a method that the end of a run depends on: a `solver.latin.Latin`."""
+    """Parts of a method that determine the end of a run: a `solver.latin.Latin`."""
 
     @property
     def stop(self) -> Stop:
@@ -122,7 +122,7 @@ class JudgedMethod(Protocol):
 
     @property
     def start(self) -> object:
-        """Start that is near the solution, or None."""
+        """Start near the solution, or None to start from zero."""
 
     @property
     def linear(self) -> object:
@@ -138,7 +138,7 @@ class JudgedMethod(Protocol):
 
 
 class StopState:
-    """State of the stop rules during a run, with their own cost.
+    """State of the stop rules during a run, and the time that they take.
 
     A run has converged when accuracy and tolerance hold, or when a status step ends it
     with a certified solution: at once, or as soon as the iterates themselves are within
@@ -235,7 +235,7 @@ class StopState:
         )
 
     def _own_residual(self, iterate: Iterate, status: Status | None) -> float:
-        """KKT residual of the iterate at which a run would fail; NaN at all others.
+        """KKT residual of an iterate at which a run would fail; NaN at all others.
 
         That iterate may be one where both stages agree up to rounding.
         """
@@ -246,7 +246,7 @@ class StopState:
         return math.nan
 
     def _billed(self, iterate: Iterate, began: float) -> float:
-        """Bill the time since `began` to the rules; seconds of the whole run."""
+        """Add the time since `began` to that of the rules; return the run's seconds."""
         self.seconds += time.perf_counter() - began
         return iterate.seconds + self.seconds
 
@@ -290,7 +290,7 @@ class StopState:
         return iterate.number >= self._stop.iterations or seconds >= self._stop.seconds
 
     def _reached(self, iterate: Iterate, error: float) -> Status | None:
-        """Status of a run that has converged or stalled, None if neither."""
+        """Status of a run that has converged or stalled; else None."""
         status = self._converged(iterate, error)
         if status is not None:
             return status
@@ -306,7 +306,7 @@ class StopState:
         return None
 
     def _converged(self, iterate: Iterate, error: float) -> Status | None:
-        """Status of a run that meets accuracy and tolerance, None if it does not."""
+        """Status of a run that meets accuracy and tolerance; else None."""
         asks_tolerance = math.isfinite(self._stop.tolerance)
         if self._asks_accuracy and not error <= self._stop.accuracy:
             return None
@@ -319,7 +319,7 @@ class StopState:
         return None
 
     def _status_of_accurate(self, iterate: Iterate) -> Status | None:
-        """Status of a run that is accurate enough, None if that needs a proof first."""
+        """Status of a run that is accurate enough; None if a certificate is needed."""
         estimate = self.estimate
         if estimate.is_proven:
             # Without a search the iterate is the answer, and its displacement, too, has
@@ -338,7 +338,7 @@ class StopState:
         return EXPECTED
 
     def _is_low(self, iterate: Iterate, tolerance: float) -> bool:
-        """Check whether the LATIN indicator is low, and another measure agrees.
+        """Check whether the LATIN indicator is low, confirmed by another measure.
 
         That is the k-free indicator, or the distance to a certified solution. The LATIN
         indicator alone can be fooled: a search direction that is far from the stiffness
@@ -354,7 +354,7 @@ class StopState:
         return self.estimate.is_proven_within(enough, iterate)
 
     def _exhausted(self, iterate: Iterate) -> Status:
-        """Status of a run at its limit, with the criterion that it has not met."""
+        """Status of a run at its limit, with the criterion that is not met."""
         is_proven = self.estimate.is_proven
         lack = AT_LIMIT
         if self._asks_accuracy and self._searches and is_proven:
@@ -373,7 +373,7 @@ def _is_failure(status: Status | None) -> bool:
 
 
 class StallCheck:
-    """Watch on a LATIN indicator that stops falling; `indicator` is the lowest.
+    """Detector of a LATIN indicator that stops falling; `indicator` is the lowest.
 
     It has stopped where it was lowest in the first half of the iterations.
     """

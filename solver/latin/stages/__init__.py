@@ -1,1 +1,1 @@
-"""The two stages of an iteration, and what they are made of."""
+"""The two stages of an iteration, and their parts."""

@@ -1,4 +1,4 @@
-"""Blocks of instants, on which several threads may work at once."""
+"""Blocks of instants, for several threads."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ALL = slice(None)
 
 
 class Blocks:
-    """Instants of a boundary field in blocks, on which several threads work at once.
+    """Blocks of the instants of a boundary field, for several threads.
 
     Neither the blocks nor the results depend on the number of threads.
 
@@ -58,7 +58,7 @@ class Blocks:
 
 
 class OneBlasThread:
-    """Context with one thread for BLAS: several are slower for products of few rows.
+    """Context that limits BLAS to one thread: faster for products of few rows.
 
     It may be entered several times; the last to leave lifts the limit.
     """

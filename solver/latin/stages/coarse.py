@@ -78,7 +78,7 @@ class CoarseProblem:
 
 
 class _LocalBasis(NamedTuple):
-    """Part of the macro basis that the substructures of a group see.
+    """Part of the macro basis on the rows of a group's substructures.
 
     Attributes
     ----------
@@ -151,7 +151,7 @@ def _macro_body_force(k: Array, body: Array, local: _LocalBasis) -> Array:
 
 
 def _local_basis(basis: sparse.csr_array, rows: Indices) -> _LocalBasis:
-    """Part of a macro basis, (n_rows, n_macro), that all members of a group share.
+    """Part of a macro basis, (n_rows, n_macro), common to all members of a group.
 
     `rows` are the boundary rows of the group, shape (n_boundary, n_substructures).
     Where members do not see the same, or a row has only one macro quantity, the local
@@ -173,7 +173,7 @@ def _local_basis(basis: sparse.csr_array, rows: Indices) -> _LocalBasis:
 def _shared_basis(
     stacked: sparse.csr_array, counts: Indices
 ) -> tuple[Array, sparse.csr_array] | None:
-    """Basis and assembly as of `_LocalBasis`, None if the members' parts differ.
+    """Common basis and assembly as in `_LocalBasis`; None if members' parts differ.
 
     Parameters
     ----------
@@ -206,7 +206,7 @@ def _shared_basis(
 def _solver(
     system: sparse.csc_array, spread: sparse.csr_array, constant: Array
 ) -> Callable[[Array, slice], Array]:
-    """Map from the targets' macro forces at some instants to w~ as the groups see it.
+    """Map from macro forces of the targets at some instants to w~ of the groups.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Groups of identical substructures with the same k, whose fields are held together."""
+"""Groups of identical substructures with the same k, with common arrays of fields."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Group:
     Attributes
     ----------
     numbers
-        Numbers of the substructures.
+        Indices of the substructures.
     rows
         Boundary rows, shape (n_boundary, n_substructures).
     k
@@ -62,7 +62,7 @@ class Group:
         return np.zeros((*self.rows.shape, self._n_instants), order="F")
 
     def gather(self, field: Array, instants: slice) -> None:
-        """Make the group's rows of a field its target, at some instants.
+        """Copy the group's rows of a field into its target, at some instants.
 
         `field` has shape (n_rows, n_instants), scaled.
         """
@@ -80,7 +80,7 @@ class Group:
         field.T[instants, self._order] = flat[instants]
 
     def restore(self, checkpoint: Checkpoint | None) -> None:
-        """Take on the state of a checkpoint, or a zero field without one."""
+        """Set the state to that of a checkpoint, or to zero without one."""
         self.state = self.field()
         if checkpoint is not None:
             self.state[:] = checkpoint.outgoing[self.rows]
@@ -102,7 +102,7 @@ class Group:
         np.add(old, target, out=old)
 
     def reflect(self, instants: slice) -> Array:
-        """W - F/k = 2 W - (W + F/k), up to date at some instants.
+        """W - F/k = 2 W - (W + F/k), updated at some instants.
 
         Shape (n_boundary, n_substructures, n_instants), scaled; the next call
         overwrites the field.
@@ -118,5 +118,5 @@ class Group:
         return self._reflected
 
     def bases(self) -> Iterator[tuple[int, SharedBasis]]:
-        """Separated bases, by number of the substructure; empty for full fields."""
+        """Separated bases, by index of the substructure; empty for full fields."""
         return iter(())

@@ -71,7 +71,7 @@ class LinearStage:
         self._shape = (problem.n_rows, problem.n_instants)
 
     def restore(self, checkpoint: Checkpoint | None) -> None:
-        """Take on the state of a checkpoint, or zero fields without one."""
+        """Set the state to that of a checkpoint, or to zero without one."""
         for group in self.groups:
             group.restore(checkpoint)
 
@@ -83,14 +83,14 @@ class LinearStage:
         return tuple(bases[number] for number in sorted(bases))
 
     def read(self, target: Array) -> None:
-        """Make W^ + F^/k of the local stage the target of all groups.
+        """Set the targets of all groups to W^ + F^/k of the local stage.
 
         `target` has shape (n_rows, n_instants), scaled.
         """
         self._each(lambda group, instants: group.gather(target, instants))
 
     def advance(self, relaxation: float) -> None:
-        """Solve the linear stage, and mix the new state with the share `relaxation`."""
+        """Solve the linear stage; the new state enters with the share `relaxation`."""
         if self._coarse is not None:
             self._coarse.add_multiplier()
         self._each(lambda group, instants: group.relax(relaxation, instants))

@@ -67,7 +67,7 @@ class LocalStage:
                 self._instantaneous.append(rule)
 
     def __call__(self, incoming: Array) -> Array:
-        """W^ + F^/k that obey all laws, from z = W - F/k; the next call overwrites it.
+        """W^ + F^/k that obeys all laws, from z = W - F/k; the next call overwrites it.
 
         Both have shape (n_rows, n_instants), scaled.
         """

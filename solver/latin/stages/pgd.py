@@ -67,7 +67,7 @@ class PGD:
 
 
 class PGDGroup(Group):
-    """Identical substructures whose y is on separated bases, which some may share."""
+    """Identical substructures with y on separated bases; some share a basis."""
 
     shared: list[SharedBasis]
 
@@ -81,7 +81,7 @@ class PGDGroup(Group):
         self.iterations = 0
 
     def restore(self, checkpoint: Checkpoint | None) -> None:
-        """Take on the bases of a checkpoint or of its fields; zero without one."""
+        """Set the bases to those of a checkpoint, or of its fields, or to zero."""
         self.iterations = 0
         field = self.field()
         if checkpoint is not None:
@@ -105,7 +105,7 @@ class PGDGroup(Group):
         return rebuilt
 
     def relax(self, relaxation: float, instants: slice) -> None:
-        """Bring the bases to the target: update time functions, enrich, downsize."""
+        """Fit the bases to the target: update time functions, enrich, downsize."""
         self.shared = [self._advanced(shared, relaxation) for shared in self.shared]
         self.iterations += 1
         if self._pgd.sharing > 0.0 and self.iterations % SHARE_EVERY == 0:
@@ -126,7 +126,7 @@ class PGDGroup(Group):
         return self._reflected
 
     def bases(self) -> Iterator[tuple[int, SharedBasis]]:
-        """Separated bases, by number of the substructure."""
+        """Separated bases, by index of the substructure."""
         for shared in self.shared:
             for number in shared.members:
                 yield number, shared
@@ -150,7 +150,7 @@ class PGDGroup(Group):
         field[:, positions] = columns.reshape(len(field), len(positions), -1, order="F")
 
     def _advanced(self, shared: SharedBasis, relaxation: float) -> SharedBasis:
-        """Bring a basis to the target, and enrich it if the modes miss too much."""
+        """Fit a basis to the target; enrich it if the modes leave a large rest."""
         basis = shared.basis
         pgd = self._pgd
         target = self._columns(shared.members, self.target)
@@ -181,7 +181,7 @@ class PGDGroup(Group):
         allowed: float,
         relaxation: float,
     ) -> SeparatedBasis:
-        """Add pairs to a basis until its modes miss no more than is allowed.
+        """Add pairs to a basis until the rest is no larger than allowed.
 
         Parameters
         ----------
@@ -211,7 +211,7 @@ class PGDGroup(Group):
         return basis
 
     def _share(self) -> None:
-        """Join bases whose fields lie in each other's modes up to the allowed share."""
+        """Merge bases of which the fields lie, up to a share, in each other's modes."""
         joined: list[SharedBasis] = []
         for shared in self.shared:
             position = self._partner(shared, joined)
@@ -222,7 +222,7 @@ class PGDGroup(Group):
         self.shared = joined
 
     def _partner(self, shared: SharedBasis, others: list[SharedBasis]) -> int | None:
-        """Position of the first other basis that may be joined with one, or None."""
+        """Index of the first other basis that can be merged with a basis, or None."""
         for position, other in enumerate(others):
             apart = (
                 shared.basis.outside(other.basis),

@@ -25,7 +25,7 @@ from fresh memory, whose first touch costs up to ten times the solution (measure
 
 
 class Response:
-    """Boundary response H k of a substructure, by a sparse solution for every column.
+    """Boundary response H k of a substructure, by a sparse solve for every column.
 
     H k y is the boundary displacement under boundary forces k y, with k as springs to
     rest (MATHEMATICS.md, 2).
@@ -73,7 +73,7 @@ class Response:
         return np.asarray(full)
 
     def of_body_force(self, force: Array) -> Array:
-        """Boundary displacement under a body force, with k as springs to rest.
+        """Boundary displacement under a body force, with springs k to the ground.
 
         `force` has shape (n_dofs, n_instants), the result (n_boundary, n_instants),
         scaled.
@@ -123,7 +123,7 @@ def _is_dense(elasticity: Elasticity) -> bool:
 
 
 def _solver(elasticity: Elasticity, k: Array) -> Callable[[Array], Array]:
-    """Map from forces on all degrees of freedom to displacements, with k as springs.
+    """Map from forces on all degrees of freedom to displacements, with springs k.
 
     `k` has shape (n_boundary,); forces and displacements have shape (n_dofs, n), all
     scaled.

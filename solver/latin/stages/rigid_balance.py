@@ -61,8 +61,8 @@ class Balance:
         rounding = ROUNDED * reach / (compliance * forces.load_size)
         self.enough = max(BALANCED, float(rounding))
 
-    def together(self, loading: Loading) -> RigidState:
-        """State after steps of all instants from where bodies stand, if that is near.
+    def solve_together(self, loading: Loading) -> RigidState:
+        """State after common Newton steps of all instants, if they converge.
 
         Forces may be out of balance at some instants.
         """
@@ -84,7 +84,7 @@ class Balance:
         return state
 
     def _stepped_together(self, state: RigidState, loading: Loading) -> Array:
-        """Positions after a step of all instants of a state, (n_motions, n_instants).
+        """Positions after a common step of all instants, (n_motions, n_instants).
 
         Sliders at the instant before each move, too: a pair that sticks keeps its
         slider, others take it along.
@@ -113,7 +113,7 @@ class Balance:
             moved = np.where(sticks[:, instant], moved, carried)
         return forces.moved(state, step, moves, loading).position
 
-    def settled(
+    def solve_instant(
         self,
         loading: Loading,
         sliders: Array,
@@ -121,7 +121,7 @@ class Balance:
         before: Array,
         last: tuple[Loading, Array] | None,
     ) -> RigidState:
-        """State of one instant in balance, or the nearest to that which is found.
+        """State of one instant in balance, or the nearest to balance that is found.
 
         Parameters
         ----------
@@ -142,7 +142,7 @@ class Balance:
         tried = []
         if guesses:
             starts = [forces.at(guess, loading, sliders) for guess in guesses]
-            tried.append(self._from(_best(starts), loading, HELD))
+            tried.append(self._newton(_best(starts), loading, HELD))
             if tried[0].error <= self.enough:
                 return tried[0]
         start = forces.at(before, loading, sliders)
@@ -150,17 +150,17 @@ class Balance:
             presses=np.ones_like(start.presses), slips=np.zeros_like(start.slips)
         )
         stuck = self._stepped(glued, loading, HELD)
-        tried.append(self._from(stuck, loading, FIRM))
+        tried.append(self._newton(stuck, loading, FIRM))
         if tried[-1].error <= self.enough:
             return tried[-1]
         if last is not None:
-            tried.append(self._followed(last, loading, sliders))
+            tried.append(self._follow_path(last, loading, sliders))
         return _best(tried)
 
-    def _followed(
+    def _follow_path(
         self, last: tuple[Loading, Array], loading: Loading, sliders: Array
     ) -> RigidState:
-        """State at the end of the path from the instant before, as in `settled`."""
+        """State at the end of the path from the instant before, or nearest to it."""
         forces = self._forces
         before, position = last
         begin = forces.at(position, before, sliders)
@@ -171,10 +171,10 @@ class Balance:
         if end is None:
             return forces.at(position, loading, sliders)
         # A path of many kinks ends near the balance, up to rounding.
-        return self._from(forces.at(end, loading, sliders), loading, HELD)
+        return self._newton(forces.at(end, loading, sliders), loading, HELD)
 
-    def _from(self, state: RigidState, loading: Loading, held: float) -> RigidState:
-        """The best state on the way that Newton's method takes from a first one.
+    def _newton(self, state: RigidState, loading: Loading, held: float) -> RigidState:
+        """The best state among the steps of Newton's method from a first one.
 
         `held` is the share of springs that hold bodies, as in `HELD`.
         """
@@ -187,7 +187,7 @@ class Balance:
         return best
 
     def _stepped(self, state: RigidState, loading: Loading, held: float) -> RigidState:
-        """State after a step to where forces balance if no status changes.
+        """State after a Newton step: forces balance if no status changes.
 
         `held` is as in `_from`.
         """
@@ -198,5 +198,5 @@ class Balance:
 
 
 def _best(states: Sequence[RigidState]) -> RigidState:
-    """The state of one instant, of some, that is nearest to balance."""
+    """The state, of several of one instant, that is nearest to balance."""
     return min(states, key=lambda state: float(state.error[0]))

@@ -1,4 +1,4 @@
-"""Rigid motions of all bodies in the local stage: a coarse problem that opens, slips.
+"""Rigid motions of all bodies in the local stage: a coarse problem with contact.
 
 Where hinges are free next to nothing resists the motions of bodies, and E+ alone holds
 them: an iteration moves a body by about (unbalanced force over k), which is thousands
@@ -37,7 +37,7 @@ arch of 61 voussoirs moved by 20 mm has 2 in the first three (measured)."""
 
 
 def moves_rigidly(problem: Problem) -> bool:
-    """Check whether sides of a chain of bodies move so far that hinges are free.
+    """Check whether prescribed motions of a chain of bodies open free hinges.
 
     A law of contact may do no more than open, slip and give way. Bricks of a wall,
     which touch more than two others, seldom find a balance as rigid bodies where
@@ -54,7 +54,7 @@ def moves_rigidly(problem: Problem) -> bool:
 
 
 def _moves_far(problem: Problem) -> bool:
-    """Check whether sides move further than loads deform bodies, by far."""
+    """Check whether sides move much further than loads deform bodies."""
     moved = largest_size(problem.prescribed[1])
     load = largest_size(_load_sizes(problem).sum(axis=0))
     # Without any load the motion itself makes all forces.
@@ -73,7 +73,7 @@ def _load_sizes(problem: Problem) -> Array:
 
 
 def _is_plain(law: Contact) -> bool:
-    """Check whether a contact opens, and slips at mu times what presses it."""
+    """Check whether a contact opens, and slips at mu times the pressing force."""
     friction = law.tangential
     if law.normal is None or law.incremental_form() is None:
         return False
@@ -83,7 +83,7 @@ def _is_plain(law: Contact) -> bool:
 
 
 class RigidBodies:
-    """Shifts of all bodies to where their forces balance in the local stage.
+    """Shifts of all bodies to positions of balanced forces in the local stage.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class RigidBodies:
         shifts = np.zeros_like(loading.load)
         first = 0
         if self._is_near:
-            state = self._balance.together(loading)
+            state = self._balance.solve_together(loading)
             is_wrong = ~(state.error <= self._balance.enough)
             first = len(is_wrong)
             if is_wrong.any():
@@ -160,7 +160,7 @@ class RigidBodies:
     def _walk(
         self, loading: Loading, centres: Array, shifts: Array, first: int
     ) -> bool:
-        """Shift bodies instant by instant, and tell whether some has no balance.
+        """Shift bodies instant by instant; return whether some instant has no balance.
 
         Parameters
         ----------
@@ -193,7 +193,7 @@ class RigidBodies:
             state = None
             if not is_lost:
                 guesses = self._guesses(shifts, instant)
-                state = self._balance.settled(
+                state = self._balance.solve_instant(
                     loading.part(here),
                     sliders,
                     guesses,
@@ -209,7 +209,7 @@ class RigidBodies:
         return is_lost
 
     def _guesses(self, shifts: Array, instant: int) -> list[Array]:
-        """Shifts that may be near those of an instant, (n_motions, 1) each.
+        """Guesses of the shifts of an instant, (n_motions, 1) each.
 
         Those before it, (n_motions, n_instants), go on as they did: from rest an arch
         of 31 voussoirs takes a fifth of the time so (measured).
@@ -243,7 +243,7 @@ def _instant_before(
 def _motions(
     problem: Problem, k: Array
 ) -> tuple[sparse.csr_array, sparse.csr_array, Array]:
-    """Rigid motions of all bodies, and what belongs to them.
+    """Rigid motions of all bodies, with their jumps and forces.
 
     Returned are the motions of rows, shape (n_rows, n_motions); the map from a field of
     rows to its mean motions, weighted by k, (n_motions, n_rows); and the body forces

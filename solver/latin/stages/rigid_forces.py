@@ -49,7 +49,7 @@ class Loading(NamedTuple):
         return Loading(self.jump[:, instants], self.load[:, instants])
 
     def since(self, before: Loading) -> Loading:
-        """Changes of jumps and loads since others."""
+        """Changes of jumps and loads from an earlier loading."""
         return Loading(self.jump - before.jump, self.load - before.load)
 
 
@@ -102,7 +102,7 @@ class RigidState(NamedTuple):
 
 
 class RigidForces:
-    """Forces on rigid bodies, their stiffness, and steps along which they work.
+    """Forces on rigid bodies, their stiffness, and lengths of steps.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ class RigidForces:
     def moved(
         self, state: RigidState, step: Array, moves: Array, loading: Loading
     ) -> RigidState:
-        """State after a step, or after the part of it along which the forces work.
+        """State after a step, shortened to where the forces stop working along it.
 
         Parameters
         ----------
@@ -236,7 +236,7 @@ class RigidForces:
     def _share(
         self, state: RigidState, step: Array, moves: Array, end_work: Array
     ) -> Array:
-        """Shares of a step after which forces do no more work along it, (n_instants,).
+        """Share of a step at which forces stop working along it, (n_instants,).
 
         State, step and moves are as in `moved`; the step goes too far: at its end
         forces do the work `end_work` along it, which is negative, (n_instants,).

@@ -50,7 +50,7 @@ class BalancePath:
         self._is_above: Flags = self._margins > 0.0
 
     def end(self) -> Array | None:
-        """Position at the end of the path, (n_motions, 1); None if it has none."""
+        """Position at the end of the path, (n_motions, 1); None without an end."""
         share = 0.0
         crossed = None
         for _ in range(KINKS * self._n_pairs):
@@ -72,7 +72,7 @@ class BalancePath:
         return None
 
     def _direction(self) -> tuple[Array, Array]:
-        """Step of the positions, and of the margins, to the end if no status changes.
+        """Step of positions and margins to the end of the path, if no status changes.
 
         Their shapes are (n_motions, 1) and (3 n_pairs,).
         """
@@ -91,7 +91,7 @@ class BalancePath:
         return step, self._in_margins(-jump[:size], -jump[size:] / forces.along)
 
     def _in_margins(self, overlap: Array, sticking: Array) -> Array:
-        """Margins of what presses, and of the friction that would hold, (n_pairs, 1).
+        """Margins of pressing, and of friction of sticking pairs, (n_pairs, 1).
 
         The bound of friction goes on below zero where a pair is open, so that all
         margins are linear.
@@ -101,11 +101,11 @@ class BalancePath:
         return np.asarray(margins[:, 0])
 
     def _leads_back(self, crossed: int, rates: Array) -> bool:
-        """Check whether the margin that was crossed goes on only backwards."""
+        """Check whether the crossed margin can only be followed backwards."""
         return bool(self._is_above[crossed] != (rates[crossed] > 0.0))
 
     def _lengths(self, rates: Array) -> Array:
-        """Lengths of the path to where each margin is zero at its rate, (3 n_pairs,).
+        """Lengths of the path up to the zero of each margin, (3 n_pairs,).
 
         Infinite where it goes away from zero, and where an open pair would slip.
         """

@@ -17,7 +17,7 @@ the sparse one (measured)."""
 
 
 class RigidContacts(NamedTuple):
-    """Pairs of contacts, as rigid bodies see them; all scaled.
+    """Pairs of contacts between rigid bodies; all scaled.
 
     Attributes
     ----------
@@ -104,7 +104,7 @@ class BandStiffness:
         self._of_pairs = sparse.csr_array(sparse.hstack(parts))
 
     def _flat(self, rows: Indices, columns: Indices) -> Indices:
-        """Places of entries in the band, column after column, (n,)."""
+        """Indices of entries in the band, column after column, (n,)."""
         row = self._place[rows]
         column = self._place[columns]
         return np.asarray(2 * self._width + row - column + self._shape[0] * column)
@@ -154,7 +154,7 @@ class BandFactors(NamedTuple):
     width
         Number of diagonals on either side.
     order
-        Numbers of the motions in the order of the band, shape (n_motions,).
+        Indices of the motions in the order of the band, shape (n_motions,).
     """
 
     factors: Array

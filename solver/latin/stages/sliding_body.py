@@ -1,4 +1,4 @@
-"""Slide of a whole body against a slack spring: its rigid motion in the local stage.
+"""Slide of a body against a slack spring: a rigid motion in the local stage.
 
 A rigid motion costs no force, so the linear stage leaves it free and E+ alone holds it:
 with all contacts slipping, an iteration moves the body by about (spring over k) of the
@@ -26,7 +26,7 @@ sought between two shifts."""
 
 
 def slide_of(problem: Problem, k: Array) -> Slide | None:
-    """Slide of a body along its support, where a slack spring catches it.
+    """Slide of a body along its support up to a slack spring, or None.
 
     None where there is no such body, or something else holds it. `k` is the search
     direction of the rows, shape (n_rows,), scaled.
@@ -53,7 +53,7 @@ def slide_of(problem: Problem, k: Array) -> Slide | None:
 
 
 def _is_spring(law: Contact) -> bool:
-    """Check whether a law is a spring: it presses, gives way, and does not rub."""
+    """Check whether a law is a spring: compliant contact without friction."""
     rubs = law.tangential.friction.any() or law.tangential.bound.any()
     return law.normal is not None and law.normal.compliance is not None and not rubs
 
@@ -73,7 +73,7 @@ def _motion_along(problem: Problem, along: Indices, across: Indices) -> Array | 
 
 
 class Slide:
-    """Shift of a body to where the forces of a local stage balance its load.
+    """Shift of a body to the position of balanced forces in a local stage.
 
     With the pressing forces known, all points that rub move by one shift. Their forces
     and the spring's fall with it, in straight lines between the shifts at which a point

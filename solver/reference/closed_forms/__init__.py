@@ -1,4 +1,4 @@
-"""Closed forms, which need no mesh, and the curves that plots draw of them."""
+"""Closed forms, and their curves for plots."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Of = Literal["friction", "pressure", "axial force", "front", "loop"]
 
 @dataclass(frozen=True, eq=False)
 class ExactCurve:
-    """The closed form of one quantity, without a mesh along the body.
+    """The closed form of one quantity as a curve, independent of the mesh.
 
     Attributes
     ----------

@@ -118,7 +118,7 @@ class VoussoirArch:
         return np.asarray(own + self.fill * columns)
 
     def _columns(self, angles: Array) -> Array:
-        """Area of columns from the angle 0 to others, and its moment, (2, n_angles).
+        """Area of columns from the angle 0 to `angles`, and its moment, (2, n_angles).
 
         They stand on the outer side; the moment is about the centre of the half.
         """
@@ -133,7 +133,7 @@ class VoussoirArch:
 
     @property
     def _conditions(self) -> tuple[Array, Array]:
-        """Rows of A (H, moment of H) <= b for all joints, (n_rows, 2) and (n_rows,).
+        """A and b of the conditions A (H, moment of H) <= b, (n_rows, 2) and (n_rows,).
 
         H and its moment are over the weight of the whole.
         """
@@ -160,7 +160,7 @@ class VoussoirArch:
 
     @property
     def reserve(self) -> float:
-        """Largest distance to all bounds at once, over the weight; < 0: it falls."""
+        """Largest distance from all bounds, over the weight; negative: it falls."""
         matrix, bounds = self._conditions
         # The distance is a third unknown.
         with_distance = np.column_stack([matrix, np.ones(len(bounds))])
@@ -176,7 +176,7 @@ class VoussoirArch:
         return self.reserve >= 0.0
 
     def thrusts(self) -> tuple[float, float] | None:
-        """Least and largest thrust over the weight; None where the arch falls.
+        """Smallest and largest thrust over the weight; None where the arch falls.
 
         The thrust is the least where the abutments have moved apart, and the largest
         where they have come together: infinite where a straight strut fits in.
@@ -195,7 +195,7 @@ class VoussoirArch:
         return found[0], found[1]
 
     def thinnest(self) -> float | None:
-        """Smallest thickness over the mean radius that stands; None without any.
+        """Smallest thickness over the mean radius of a standing arch; None without any.
 
         Milankovitch, Z. Math. Phys. 55, 1907, has 0.10748 for a semicircle of thin
         voussoirs.
@@ -205,7 +205,7 @@ class VoussoirArch:
         )
 
     def least_friction(self) -> float | None:
-        """Smallest coefficient of friction that holds the arch; None without any."""
+        """Smallest coefficient of friction of a standing arch; None without any."""
         return _onset(
             lambda friction: replace(self, friction=friction).reserve, ROUGHEST
         )
@@ -220,7 +220,7 @@ def _beyond(offset: float, radius: float, height: float) -> float:
 
 
 def _onset(reserve: Callable[[float], float], largest: float) -> float | None:
-    """Smallest value up to a largest whose reserve is at least 0; None without any."""
+    """Smallest value up to `largest` with a reserve of at least 0, or None."""
     if reserve(largest) < 0.0:
         return None
     if reserve(LEAST) >= 0.0:

@@ -23,7 +23,7 @@ PRECISE = 1e-12
 
 
 class DrawIn(NamedTuple):
-    """Tendon after its wedges have drawn in.
+    """Forces of a tendon after its wedges have drawn in.
 
     Attributes
     ----------
@@ -73,14 +73,14 @@ class Capstan:
         return self.friction * self.angle / self.length
 
     def slip_angle(self, ratio: float) -> float:
-        """Angle that slips where one tension has grown from an even one, rad.
+        """Angle of slip after one of two equal tensions has grown to a ratio, rad.
 
         `ratio` is that tension over the even one.
         """
         return math.log(ratio) / self.friction
 
     def stretched(self, tension: float, length: float) -> float:
-        """Elongation of a length that slips towards an end, and of its span, m.
+        """Elongation of a length that slips towards an end, and of the span, m.
 
         `tension` is that of the end, N.
         """
@@ -90,7 +90,7 @@ class Capstan:
         return tension / self.stiffness * (along + self.span)
 
     def elongation(self, tension: float, *, both_ends: bool = False) -> float:
-        """Elongation at a jack that pulls from zero to a tension, N, in m.
+        """Elongation at a jack, m, that pulls from zero to a tension, N.
 
         The other end is held, or jacked alike, so that the middle stands still.
         """
@@ -100,7 +100,7 @@ class Capstan:
         return self.stretched(tension, self.length) + held
 
     def drawn_in(self, tension: float, by: float) -> DrawIn | None:
-        """Forces after wedges at a jack have drawn in, m, by less than the jack pulled.
+        """Forces after wedges have drawn in by a length, m, less than the elongation.
 
         The span of the anchor must be short. None where friction turns round on the
         whole length.
@@ -183,7 +183,7 @@ class Capstan:
         return np.asarray((np.cumsum(steps) + spans) / self.stiffness)
 
     def _governs(self, tension: Array, end: Array, angles: Array) -> Array:
-        """Mask of the tension where an end bounds it: 1 there, else 0; as `tension`.
+        """Mask of the tension, 1 where the tension of an end bounds it, else 0.
 
         `tension` has shape (n_points, n_instants), N, `end` (n_instants,), N, `angles`
         from that end (n_points,).
@@ -213,14 +213,14 @@ class Capstan:
         return np.array(found)
 
     def _after(self, pull: float, before: Array, both_ends: bool) -> Array:
-        """Tension after a change of that of the last end, or of both, (POINTS,), N."""
+        """Tension along the guide, (POINTS,), N, after a change at one end or both."""
         tail = pull if both_ends else None
         return self.step(before, pull, tail, self.angles)
 
     def _beyond(
         self, pull: float, before: Array, moved: float, both_ends: bool
     ) -> float:
-        """Elongation under a tension beyond the given displacement, m, of an end."""
+        """Elongation under a tension, less the given displacement of an end, m."""
         after = self._after(pull, before, both_ends)
         stretch = self.length * float(np.trapezoid(after, dx=1.0 / (POINTS - 1)))
         stretch += self.span * (pull + float(after[0]))

@@ -42,7 +42,7 @@ class BentWire:
 
     @property
     def first_slip(self) -> float:
-        """Curvature kappa_0 at which the first point slips, 1/m."""
+        """Curvature kappa_0 at the first slip, 1/m."""
         wire = self.wire
         return float(
             self.strength
@@ -50,7 +50,7 @@ class BentWire:
         )
 
     def moment(self, curvature: Array) -> Array:
-        """Mean share of the wire in the strand's moment as it is first bent, N m.
+        """Mean contribution of the wire to the strand's moment in first bending, N m.
 
         Parameters
         ----------
@@ -67,7 +67,7 @@ class BentWire:
         return np.asarray(self.radius * np.cos(wire.lay) * force * shares)
 
     def _share(self, curvature: float) -> float:
-        """Moment over R cos(alpha) times the friction force of a radian."""
+        """Moment over R cos(alpha) times the friction force per radian."""
         ratio = curvature / self.first_slip
         if ratio <= 1.0:
             return 0.5 * ratio
@@ -120,7 +120,7 @@ class BentStrand:
         return tuple(BentWire(*wire) for wire in wires)
 
     def moment(self, curvature: Array) -> Array:
-        """Moment as the strand is first bent, N m, of the shape of the curvature.
+        """Moment in first bending, N m, of the shape of the curvature.
 
         The curvature has grown from zero, of any shape, 1/m.
         """

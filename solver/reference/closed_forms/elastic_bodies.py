@@ -46,7 +46,7 @@ class HalfPlane:
         return float(2.0 * self.force / (np.pi * self.half_width))
 
     def stuck(self, share: float) -> float:
-        """Half-width that sticks under a shear force of a share of mu P, m."""
+        """Half-width of the stick zone under a shear force, as a share of mu P, m."""
         return float(self.half_width * np.sqrt(1.0 - share))
 
     def pressure(self, positions: Array) -> Array:
@@ -55,12 +55,12 @@ class HalfPlane:
         return np.asarray(0.5 * self.modulus / self.radius * np.sqrt(square))
 
     def traction(self, positions: Array, friction: float, share: float) -> Array:
-        """Shear traction under a grown share of mu P, Pa, of the shape of positions."""
+        """Shear traction under a growing share of mu P, Pa, shape of the positions."""
         sticking = replace(self, force=(1.0 - share) * self.force)
         return friction * (self.pressure(positions) - sticking.pressure(positions))
 
     def traction_over(self, positions: Array, friction: float, shear: Array) -> Array:
-        """Shear traction under a shear force that turns, (n_positions, n_instants), Pa.
+        """Shear traction under a varying shear force, (n_positions, n_instants), Pa.
 
         Pressing grows the contact from its middle, step by step, as flat punches that
         widen. The shear force on all within a width is a play operator of the whole
@@ -97,7 +97,7 @@ class HalfPlane:
 
 
 def cantilever(length: float, height: float, young: float, poisson: float) -> float:
-    """Force at the end of a Timoshenko beam for a unit of deflection, N/m for a metre.
+    """Stiffness of a Timoshenko beam at its end, N/m per metre of thickness.
 
     In plane stress (J. M. Gere, S. P. Timoshenko, Mechanics of Materials, 1997).
     Lengths in m, E in Pa.
@@ -132,31 +132,31 @@ class TwoLeaves:
 
     @property
     def first_slip(self) -> float:
-        """Force at which they slip as they are first bent, N/m."""
+        """Force at the first slip in first bending, N/m."""
         return 4.0 / 3.0 * self.strength * self.height
 
     @property
     def stiffnesses(self) -> tuple[float, float]:
-        """Force for a unit of deflection, as one beam and as two, N/m for a metre."""
+        """Stiffness as one beam and as two, N/m per metre of thickness."""
         elastic = self.young, self.poisson
         stuck = cantilever(self.length, 2.0 * self.height, *elastic)
         return stuck, 2.0 * cantilever(self.length, self.height, *elastic)
 
     def deflection(self, force: float) -> float:
-        """Deflection under a force that has grown from zero, m."""
+        """Deflection under a force growing from zero, m."""
         stuck, apart = self.stiffnesses
         stick = min(force, self.first_slip)
         return stick / stuck + (force - stick) / apart
 
     def force(self, deflection: float) -> float:
-        """Force under a deflection that has grown from zero, N/m."""
+        """Force under a deflection growing from zero, N/m."""
         stuck, apart = self.stiffnesses
         stick = min(deflection, self.first_slip / stuck)
         return stick * stuck + (deflection - stick) * apart
 
 
 def leaf_spring(lengths: Array) -> float | None:
-    """Stiffness of graduated leaves at their end, over that of the longest leaf alone.
+    """Stiffness of graduated leaves at their end over that of the longest leaf.
 
     Leaves are clamped together, and lie on each other without friction or pressure.
     Each longer one presses on the end of the next alone: beams whose deflections agree

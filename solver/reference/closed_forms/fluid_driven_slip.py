@@ -1,4 +1,4 @@
-"""Closed forms of slip that a fluid drives: its pressure, and the front of slip.
+"""Closed forms of fluid-driven slip: pressure of the fluid, and front of slip.
 
 The excess of its pressure over what was there before obeys the diffusion equation on a
 half-line whose end has a pressure that is given. A steady one spreads as erfc(x /
@@ -34,7 +34,7 @@ rounding."""
 def spread(
     positions: Array, instants: Array, given: Array, diffusivity: float
 ) -> Array:
-    """Pressure of the fluid along the line, (n_positions, n_instants), Pa.
+    """Pressure of the fluid along the fault, (n_positions, n_instants), Pa.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def spread(
 
 
 def _risen(positions: Array, later: Array, diffusivity: float) -> Array:
-    """Pressure under one at the end that rises by 1 Pa/s, (n_positions, n_times), s."""
+    """Response to a pressure at the end that rises by 1 Pa/s, (n_positions, n), s."""
     far = _diffusion_lengths(positions, later, diffusivity)
     steady = (1.0 + 2.0 * far**2) * scipy.special.erfc(far)
     flowing = 2.0 / np.sqrt(np.pi) * far * np.exp(-(far**2))
@@ -84,7 +84,7 @@ def _diffusion_lengths(positions: Array, later: Array, diffusivity: float) -> Ar
 
 
 def fronts(positions: Array, lack: Array) -> Array:
-    """Half-length of a zone of slip that grows both ways alike, (n_instants,), m.
+    """Half-length of a symmetric zone of slip, (n_instants,), m.
 
     Stress is finite at its ends, so the integral over the zone of what the stress lacks
     to the strength, times ds / sqrt(a^2 - s^2), is zero. The half-length is 0 where
@@ -120,7 +120,7 @@ def _mean_lack(half_length: float, positions: Array, lack: Array) -> float:
 def stress_ahead(
     beyond: Array, positions: Array, lack: Array, half_length: float
 ) -> Array:
-    """Stress that a zone of slip adds ahead of it, shape (n_beyond,), Pa.
+    """Stress ahead of a zone of slip, shape (n_beyond,), Pa.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def stress_ahead(
 def slip_under_growing_strength(
     positions: Array, half_length: float, drop: float, stiffness: float
 ) -> Array:
-    """Slip of a zone whose strength grows evenly from its middle, (n_positions,), m.
+    """Slip of a zone with strength growing linearly from its middle, (n_positions,), m.
 
     The slip is zero beyond the ends of the zone. (R. Buergmann, D. D. Pollard, S. J.
     Martel, Slip distributions on faults, J. Struct. Geol. 16, 1675-1690, 1994.)

@@ -1,4 +1,4 @@
-"""Masing's rule: answers to a load that turns, from that to a growing load.
+"""Masing's rule: response to any load path from that to a growing load.
 
 From a turning point on the answer is the first curve, doubled in both directions. A
 loop that closes is forgotten, and the answer goes on as if it had not been (G. Masing,
@@ -15,7 +15,7 @@ from solver.arrays import Array
 
 
 def masing(load: Array, grown: Callable[[float], float]) -> Array:
-    """Answer to a load from rest on, (n_instants,), in the unit of the first curve.
+    """Response to a load from rest, (n_instants,), in the unit of `grown`.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def masing(load: Array, grown: Callable[[float], float]) -> Array:
 
 
 def _closes(value: float, turns: list[tuple[float, float]]) -> bool:
-    """Check that a load is back at the turn before the last one, or beyond.
+    """Check whether a load has returned to the turn before the last one, or beyond.
 
     Where that is rest, the first curve goes on at the opposite of the last one.
     """

@@ -42,7 +42,7 @@ PRECISION = 1e-13
 
 @dataclass(frozen=True, eq=False)
 class ClosedForm:
-    """The exact solution at the nodes of a mesh, without discretisation in space.
+    """The exact solution at positions of nodes, without discretisation in space.
 
     In time it is exact where the load is monotone between instants.
 
@@ -99,7 +99,7 @@ def closed_form(scene: Rods) -> ClosedForm | None:
 
 
 def _grip_beyond(scene: Rods, share: float | Array) -> Array:
-    """R at a share of every element's length, shape (n_elements, n_instants or 1), N.
+    """Friction R from a section to the end, at a share of each element's length, N.
 
     Of shares of shape (n_shares, 1, 1): (n_shares, ...).
     """
@@ -114,7 +114,7 @@ def _grip_beyond(scene: Rods, share: float | Array) -> Array:
 
 
 def _normal_force(scene: Rods, slack: Array) -> Array:
-    """Normal force N at sections of a slack R, (n_sections, n_instants), N.
+    """Normal force at sections with friction R to the end, (n_sections, n_instants), N.
 
     The slack has the shape (n_sections, n_instants or 1), N.
     """
@@ -174,7 +174,7 @@ def pulled_compliant_bar(
 def pulled_changing_bar(
     force: float, stiffness: float, strength: float, ratio: float, slip_length: float
 ) -> float:
-    """End displacement, m, where friction changes with slip, under a grown force.
+    """End displacement, m, under a growing force, where friction changes with slip.
 
     It holds while no point has slipped farther than friction changes (MATHEMATICS.md,
     14).
@@ -255,7 +255,7 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
 
 
 def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
-    """Bars left and right of the break, from their far ends to the break, if known."""
+    """Bars left and right of the break, from far end to break; None if unknown."""
     assert scene.broken is not None
     node = scene.broken[1]
     sides = scene.rubbing_sides
@@ -280,7 +280,7 @@ def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
 
 
 def _tension(scene: Rods) -> Array:
-    """Tension T under a rigid grip, which gives the elongation, (n_instants,), N.
+    """Tension T under a prescribed elongation of a rigid grip, (n_instants,), N.
 
     The elongation is T L / ES, plus for each side of the break the slip there over
     m + 1. That slip grows with T no faster than T L / ES, so a step of half the

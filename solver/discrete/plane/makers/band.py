@@ -34,7 +34,7 @@ MOST_EXPONENT = 100.0
 
 @dataclass(frozen=True)
 class GuideCurve:
-    """A circular arc, and lines of a band on it that goes on straight beyond its ends.
+    """A circular arc, and the line of a band on it with straight spans at both ends.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class GuideCurve:
 
     @cached_property
     def nodes(self) -> Indices:
-        """Numbers of the nodes on the arc, (elements + 1,), among those of the band."""
+        """Indices of the nodes on the arc, (elements + 1,), among those of the band."""
         return np.arange(1, self.elements + 2)
 
     @cached_property
@@ -183,7 +183,7 @@ class Band(Bodies):
         return lambda fields: x.of(fields) + y.of(fields)
 
     def slide(self) -> Array | None:
-        """Displacement of the first end along the guide, (n_instants,), m, about.
+        """Estimated displacement of the first end along the guide, (n_instants,), m.
 
         The first end is pulled by a force, and the last one is moved; None for other
         ends. While the band sticks somewhere, its elongation is between those of a band
@@ -205,7 +205,7 @@ class Band(Bodies):
         )
 
     def _elongation(self, exponent: float) -> float:
-        """Elongation over the tension of the first end, m/N, of a band that slides.
+        """Elongation of a sliding band over the tension of its first end, m/N.
 
         The tension at the last end is exp(exponent) times that of the first.
         """
@@ -218,7 +218,7 @@ class Band(Bodies):
         return float((around + spans) / stiffness)
 
     def tensions(self, problem: Problem, fields: LoopFields) -> Array:
-        """Tension of all elements, those of the spans too, (n_elements, n_instants), N.
+        """Tension of all elements, including spans, (n_elements, n_instants), N.
 
         From the first end to the last.
         """
@@ -228,7 +228,7 @@ class Band(Bodies):
         return np.asarray(body.young * body.shape.area * strains)
 
     def strains(self, problem: Problem, displacement: Array) -> Array:
-        """Strain of all elements, those of the spans too, (n_elements, n_instants).
+        """Strain of all elements, including spans, (n_elements, n_instants).
 
         `displacement` is that of the problem's degrees of freedom, (n_dofs,
         n_instants), m.
@@ -242,7 +242,7 @@ class Band(Bodies):
         return np.asarray(stretch / lengths)
 
     def lifts(self, problem: Problem, displacement: Array) -> Array:
-        """Slope of the elements on the guide to it, shape (elements, n_instants).
+        """Slope of the elements on the guide against the guide, (elements, n_instants).
 
         A band that slides along its guide turns with it, which is no such slope.
         """
@@ -260,7 +260,7 @@ _AXES = (0, "x"), (1, "y")
 
 
 def _with_play(lowest: Array, highest: Array) -> Array:
-    """Displacement that moves no further than bounds push it; all (n_instants,), m."""
+    """Displacement that moves only when a bound pushes it; all (n_instants,), m."""
     places = [0.0]
     for low, high in zip(lowest.tolist(), highest.tolist(), strict=True):
         places.append(min(max(places[-1], low), high))

@@ -64,13 +64,13 @@ class Wires:
 
     @cached_property
     def highest(self) -> list[int]:
-        """Numbers of the wires of the highest row."""
+        """Indices of the wires of the highest row."""
         count = len(self.centres)
         return list(range(count - self.packing.rows[-1], count))
 
     @cached_property
     def _placed(self) -> list[tuple[Disc, int]]:
-        """Shape of each wire, and by how many turns it is turned."""
+        """Shape of each wire, and its rotation in turns."""
         placed = []
         for wire in range(len(self.centres)):
             pattern, turn = _first_order(tuple(self._contacts(wire).items()))
@@ -78,7 +78,7 @@ class Wires:
         return placed
 
     def _shaped(self, pattern: Pattern) -> Disc:
-        """Shape of a wire with zones by their direction, one for all such wires."""
+        """Shape of a wire with zones by their direction; equal wires share it."""
         # To mesh it takes as long as a few iterations, and loads leave it alone.
         key = Disc, self.radius, pattern
         return CACHE.get(key, lambda: Disc.of(self.radius, dict(pattern)))
@@ -108,7 +108,7 @@ class Wires:
         return disc.zones[(direction - turn) % TURNS]
 
     def bodies(self, young: float, poisson: float, weight: Array) -> list[Body]:
-        """Wires of a weight along x and y, shape (2, n_instants), N/m^3."""
+        """Bodies of the wires, with a weight along x and y, (2, n_instants), N/m^3."""
         bodies = []
         area = np.pi * self.radius**2
         for number, (disc, turn) in enumerate(self._placed):
@@ -195,7 +195,7 @@ class Wires:
         )
 
     def _rise(self, wire: int, direction: int) -> Array:
-        """Distance of a chain of a wire from its tangent, (n_nodes,), m."""
+        """Distance of the nodes of a wire's chain from its tangent, (n_nodes,), m."""
         disc, turn = self._placed[wire]
         x, y = disc.mesh.nodes[self.chain(wire, direction)].T
         # Middles of edges stand for points of the circle.
@@ -221,7 +221,7 @@ class Wires:
         return Load.of_pressure("plate y", len(self.centres), bodies[-1], top, pressure)
 
     def moved(self, displacement: Array) -> Held:
-        """Ends of the plate moved along it, (n_instants,), m, which keep it level."""
+        """Holds of the plate's ends: moved along it, (n_instants,), m, and level."""
         nodes = np.concatenate(self.plate.ends)
         return Held("plate x", len(self.centres), nodes, 0, displacement)
 
@@ -233,7 +233,7 @@ def _unit(direction: int) -> Array:
 
 @lru_cache(1000)
 def _first_order(contacts: Pattern) -> tuple[Pattern, int]:
-    """Contacts as they are seen from one of all turned axes, and the number of turns.
+    """Contacts in the turned axes in which they come first, and the turn.
 
     Wires that are turned copies of each other share the first of all orders.
     """
@@ -243,6 +243,6 @@ def _first_order(contacts: Pattern) -> tuple[Pattern, int]:
 
 
 def _turned(contacts: Pattern, turn: int) -> Pattern:
-    """Contacts as seen from axes that are turned, in ascending order."""
+    """Contacts in axes that are turned, in ascending order of direction."""
     turned = [((each - turn) % TURNS, zone) for each, zone in contacts]
     return tuple(sorted(turned, key=lambda contact: contact[0]))

@@ -1,4 +1,4 @@
-"""A mesh whose parts have names, taken apart into bodies, contacts and sides.
+"""A mesh with named parts, divided into bodies, contacts and sides.
 
 Surfaces are bodies. Edges with a name lie between two bodies, which makes them a
 contact, or on the outside of one, which makes them a side. Each body has nodes of its
@@ -52,7 +52,7 @@ class ContactLine(NamedTuple):
 
 
 class OuterLine(NamedTuple):
-    """Line on the outside of a body: name of its edges, number of the body, chain."""
+    """Line on the outside of a body: name of its edges, index of the body, chain."""
 
     name: str
     body: int
@@ -133,14 +133,14 @@ class NamedMesh:
 
     @cached_property
     def _used(self) -> list[Indices]:
-        """Numbers of the points of every body, ascending, (n_corners,) each."""
+        """Indices of the points of every body, ascending, (n_corners,) each."""
         return [np.unique(elements) for elements in self.surfaces.values()]
 
     @cached_property
-    def places(self) -> Indices:
-        """Number of the place of every point, (n_points,); bodies may share one.
+    def vertices(self) -> Indices:
+        """Index of the vertex at every point, (n_points,).
 
-        Points of one body at the same place, as of a crack, stay apart.
+        Points of one body at the same position, as of a crack, stay apart.
         """
         count = len(self.points)
         owners = np.zeros((count, len(self.names)), dtype=bool)
@@ -156,16 +156,16 @@ class NamedMesh:
 
     @cached_property
     def edges(self) -> list[Array]:
-        """Edges of every body as sorted places of their ends, (n_edges, 2) each."""
+        """Edges of every body as sorted vertices, (n_edges, 2) each."""
         edges = []
         for shape, used in zip(self.shapes, self._used, strict=True):
-            ends = self.places[used][shape.grid.facets.T]
+            ends = self.vertices[used][shape.grid.facets.T]
             edges.append(np.sort(ends, axis=1))
         return edges
 
     @cached_property
     def owners(self) -> dict[tuple[int, int], list[int]]:
-        """Bodies that have an edge, by the places of its ends."""
+        """Bodies that have an edge, by its vertices."""
         owners: dict[tuple[int, int], list[int]] = {}
         for body, edges in enumerate(self.edges):
             for low, high in edges.tolist():
@@ -174,7 +174,7 @@ class NamedMesh:
 
     @cached_property
     def groups(self) -> dict[tuple[str, tuple[int, ...]], Array]:
-        """Edges with a name, (n, 2), by the name and the bodies that have them.
+        """Named edges, (n, 2), by their name and their bodies.
 
         Where bodies meet an edge has the first of its names: a second contact there
         would rub once more.
@@ -182,7 +182,7 @@ class NamedMesh:
         groups: dict[tuple[str, tuple[int, ...]], list[tuple[int, int]]] = {}
         first_names: dict[tuple[int, int], str] = {}
         for name, ends in self.lines.items():
-            for low, high in np.sort(self.places[ends], axis=1).tolist():
+            for low, high in np.sort(self.vertices[ends], axis=1).tolist():
                 bodies = tuple(self.owners.get((low, high), ()))
                 is_first = first_names.setdefault((low, high), name) == name
                 if is_first or len(bodies) < 2:
@@ -209,10 +209,10 @@ class NamedMesh:
     ) -> Iterator[ContactLine]:
         """Contact lines of edges between two bodies."""
         for line in chains_of(edges, self._position_of):
-            chains = [self._along(body, line.own) for body in bodies]
-            # Each place of a chain has two nodes up to the next one.
-            whole = self._along(bodies[0], line.places)
-            skipped = 2 * line.beside
+            chains = [self._along(body, line.inner) for body in bodies]
+            # Each vertex of a chain has two nodes up to the next one.
+            whole = self._along(bodies[0], line.vertices)
+            skipped = 2 * line.overlap
             outward = self.shapes[bodies[0]].outward(whole)
             outward = outward[skipped : len(whole) - skipped]
             # The normal points upwards, of an upright line to the right.
@@ -236,32 +236,32 @@ class NamedMesh:
         for (name, bodies), edges in self.groups.items():
             if len(bodies) == 1:
                 for line in chains_of(edges, self._position_of):
-                    chain = self._along(bodies[0], line.own)
+                    chain = self._along(bodies[0], line.inner)
                     found.append(OuterLine(name, bodies[0], chain))
         return found
 
     @cached_property
     def _position_of(self) -> Array:
-        """Position of every place, shape (n_places, 2), m."""
-        positions = np.empty((self.places.max() + 1, 2))
-        positions[self.places] = self.points
+        """Coordinates of every vertex, shape (n_vertices, 2), m."""
+        positions = np.empty((self.vertices.max() + 1, 2))
+        positions[self.vertices] = self.points
         return positions
 
-    def _along(self, body: int, places: Sequence[int]) -> Indices:
-        """Chain of nodes of a body along places in turn."""
-        own = self.places[self._used[body]]
+    def _along(self, body: int, vertices: Sequence[int]) -> Indices:
+        """Chain of nodes of a body along vertices in order."""
+        own = self.vertices[self._used[body]]
         order = np.argsort(own)
-        corners = order[np.searchsorted(own, places, sorter=order)]
+        corners = order[np.searchsorted(own, vertices, sorter=order)]
         return self.shapes[body].along(corners)
 
 
 def _numbered(lines: Sequence[ContactLine]) -> list[ContactLine]:
-    """Contact lines with a number behind the name where several have it."""
+    """Contact lines, with numbers appended to a name that several have."""
     names = [line.name for line in lines]
     numbered = []
-    for place, line in enumerate(lines):
+    for index, line in enumerate(lines):
         name = line.name
         if names.count(name) > 1:
-            name = f"{name} {names[: place + 1].count(name)}"
+            name = f"{name} {names[: index + 1].count(name)}"
         numbered.append(line._replace(name=name))
     return numbered

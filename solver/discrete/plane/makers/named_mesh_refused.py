@@ -1,4 +1,4 @@
-"""Checks of a mesh whose parts have names: what it must be to be solved."""
+"""Checks of a mesh with named parts."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def check_named(mesh: NamedMesh) -> None:
 def _check_line(
     mesh: NamedMesh, name: str, bodies: tuple[int, ...], edges: Array
 ) -> None:
-    """Refuse edges of a name that are neither a contact nor a side."""
+    """Refuse edges of one name that are neither a contact nor a side."""
     allowed = "edges between two bodies, or on the outside of one"
     if not bodies:
         raise RefusedError(
@@ -70,13 +70,13 @@ def _check_line(
         raise RefusedError(
             f"line {name!r}",
             Words(f"on body {mesh.names[bodies[0]]!r} alone, {_at(mesh, edges)}"),
-            "a contact, along which two bodies have nodes at the same places",
+            "a contact, along which two bodies have nodes at the same positions",
             "mesh both bodies alike there, or give another name to a side",
         )
 
 
 def _check_overlap(mesh: NamedMesh, first: int, second: int) -> None:
-    """Refuse outer edges of two bodies that lie on each other and do not match."""
+    """Refuse outer edges of two bodies that coincide in part, without common nodes."""
     for one, other in ((first, second), (second, first)):
         starts, ends = _outer(mesh, other, ())
         from_ends = _outer(mesh, one, (one, other))
@@ -93,7 +93,7 @@ def _check_overlap(mesh: NamedMesh, first: int, second: int) -> None:
             raise RefusedError(
                 f"bodies {mesh.names[one]!r} and {mesh.names[other]!r}",
                 Words(f"that touch at ({x:.4g}, {y:.4g})"),
-                "bodies that have nodes at the same places where they touch",
+                "bodies that have nodes at the same positions where they touch",
                 "mesh both alike there",
             )
 
@@ -114,7 +114,7 @@ def _outer(mesh: NamedMesh, body: int, without: tuple[int, ...]) -> tuple[Array,
 
 
 def _at(mesh: NamedMesh, edges: Array) -> str:
-    """Words on the middle of the first of some edges, (n, 2)."""
-    first = [int((mesh.places == place).argmax()) for place in edges[0]]
+    """Text of the middle of the first of some edges, (n, 2)."""
+    first = [int((mesh.vertices == vertex).argmax()) for vertex in edges[0]]
     x, y = mesh.points[first].mean(axis=0)
     return f"({x:.4g}, {y:.4g})"

@@ -65,7 +65,7 @@ class Ring:
 
     @property
     def crown(self) -> float:
-        """Height of the outer side at the crown above the centres, m."""
+        """Height of the outer side at the crown m."""
         return float(np.sqrt(self.outer**2 - self.offset**2))
 
     @property
@@ -96,7 +96,7 @@ class Ring:
 
     @cached_property
     def along(self) -> int:
-        """Number of elements of a voussoir along the ring, about square ones."""
+        """Number of elements of a voussoir along the ring: about square ones."""
         arc = 2.0 * self.radius * self.half / self.voussoirs
         along = max(round(self.elements * arc / self.thickness), 1)
         if self.offset and self.voussoirs % 2:
@@ -118,7 +118,7 @@ class Ring:
         return _mapped(self._radii[:, None, None] * directions)
 
     def _beside_crown(self, columns: int) -> Array:
-        """Corners from the crown to the first joint on its right, m.
+        """Coordinates of corners from the crown to the first joint on its right, m.
 
         Of a number of columns of elements, shape (elements + 1, columns + 1, 2).
         """
@@ -134,7 +134,7 @@ class Ring:
 
     @property
     def _at_crown(self) -> slice:
-        """The voussoirs that end, or have their middle, at the crown of two halves."""
+        """Meshes of voussoirs that end, or have their middle, at a pointed crown."""
         if not self.offset:
             return slice(0)
         return slice((self.voussoirs - 1) // 2, self.voussoirs // 2 + 1)
@@ -283,10 +283,10 @@ class Ring:
         return np.asarray(turned + self.origins[:, None])
 
     def under_fill(self, top: float) -> Array:
-        """Shares of nodes in columns from the outer side up, (voussoirs, n_nodes).
+        """Volume above each node of the outer side, (voussoirs, n_nodes), m^3.
 
-        They are volumes, m^3 for a metre of thickness; the top of the columns is a
-        height above the centres, m.
+        For a metre of thickness; the columns end at a height `top` above the centres,
+        m.
         """
         points = self.backs
         widths = np.diff(points[:, ::2, 0], axis=1)
@@ -331,7 +331,7 @@ def _mapped(corners: Array) -> Mesh:
 
 @dataclass(frozen=True, eq=False)
 class Arch(Bodies):
-    """A ring between abutments as bodies, and the loads as they are drawn.
+    """A ring between abutments as bodies, with its loads for drawings.
 
     Attributes
     ----------
@@ -351,7 +351,7 @@ class Arch(Bodies):
 
     @property
     def downwards(self) -> Array:
-        """Weight of all, with the loads on the outer side, shape (n_instants,), N."""
+        """Weight of all bodies and of the loads on the outer side, (n_instants,), N."""
         loads = [load.force[:, 1].sum(axis=0) for load in self.loads]
         return np.asarray(-np.sum([self.weights[1], *loads], axis=0))
 
@@ -377,7 +377,7 @@ class Arch(Bodies):
         return Loop(*self.axes, moved, thrust.of)
 
     def _acts(self) -> Iterator[Act]:
-        """Loads as they are drawn, movements of the abutment, and the weight."""
+        """Arrows of loads, of movements of the abutment, and of the weight."""
         for act in self.above:
             yield replace(act, points=self._as_shares(act.points))
         for act in super()._acts():

@@ -1,4 +1,4 @@
-"""Round wires that touch: meshes graded towards their contacts, and how they lie.
+"""Round wires that touch: meshes graded towards their contacts, and packings.
 
 Wires lie on a triangular grid, so that all contacts are at multiples of 30 degrees.
 """
@@ -35,7 +35,7 @@ UP = 3
 
 @dataclass(frozen=True)
 class Zone:
-    """Half of a zone of contact, m, and the number of elements along all of it."""
+    """Zone of contact: half of its width, m, and its number of elements."""
 
     half_width: float
     elements: int
@@ -117,7 +117,7 @@ class Disc:
         )
 
     def facing(self, direction: int) -> Indices:
-        """Chain of the surface over 60 degrees about a direction without contacts."""
+        """Chain of nodes of the surface over 60 degrees about a free direction."""
         angles = TURN * (direction + np.arange(-1.0, 1.25, 0.5))
         radius = np.linalg.norm(self.mesh.corners, axis=1).max()
         wanted = _polar(np.full(len(angles), radius), angles)
@@ -141,7 +141,7 @@ def _wrapped(angle: Array) -> Array:
 
 
 def _coarse(graded: Array, radius: float) -> Array:
-    """Points inside a disc away from those of graded meshes, (n, 2), m."""
+    """Points inside a disc, away from the graded meshes, (n, 2), m."""
     circles = [np.zeros((1, 2))]
     for number in (1, 2):
         angles = TURN * (np.arange(6.0 * number) * 2.0 / number)
@@ -211,7 +211,7 @@ class Plate:
 
 
 def _chains(mesh: Mesh, zones: Iterable[Zone], lines: Sequence[Array]) -> list[Indices]:
-    """Chains of zones in the middles of lines of corners, the first ones of a mesh."""
+    """Chains of zones in the middles of lines, which are a mesh's first corners."""
     chains = []
     first = 0
     for zone, line in zip(zones, lines, strict=False):
@@ -238,7 +238,7 @@ class Packing:
     @classmethod
     @cache
     def hexagon(cls, rings: int) -> Packing:
-        """Rings of wires round one in the middle."""
+        """Rings of wires around a central wire."""
         upper = range(2 * rings, rings, -1)
         rows = [*reversed(upper), 2 * rings + 1, *upper]
         return cls(tuple(rows))
@@ -286,7 +286,7 @@ class Packing:
         return sorted(directions)
 
     def outward(self, wire: int) -> int | None:
-        """Direction out of the bundle from the end of an inner row; None elsewhere."""
+        """Direction out of the bundle at the end of an inner row; None elsewhere."""
         if self.row_of_wires[wire] in (0, len(self.rows) - 1):
             return None
         free = [

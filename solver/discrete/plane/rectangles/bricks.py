@@ -21,14 +21,14 @@ class Brick(NamedTuple):
     rows: int
 
     def nodes(self) -> tuple[slice, slice]:
-        """Nodes along and up, among those of the grid."""
+        """Nodes along and up, as indices of the grid."""
         along = slice(self.x, self.x + self.columns + 1)
         up = slice(self.y, self.y + self.rows + 1)
         return along, up
 
 
 def grid_of(bricks: Sequence[Brick]) -> tuple[int, int]:
-    """Elements of all bricks together, along and up."""
+    """Size of all bricks together, in elements along and up."""
     columns = max(brick.x + brick.columns for brick in bricks)
     rows = max(brick.y + brick.rows for brick in bricks)
     return columns, rows
@@ -50,7 +50,7 @@ class BrickJoint(NamedTuple):
 
     @property
     def sides(self) -> list[tuple[int, str]]:
-        """Rectangles and their sides at the joint; the one above or right is first."""
+        """Rectangles and their sides at the joint; the upper or right one is first."""
         if self.is_upright:
             side_above = "left"
             side_below = "right"
@@ -117,7 +117,7 @@ def with_opening(
 
 
 def _beside(brick: Brick, left: int, right: int) -> list[Brick]:
-    """Parts of a brick to the left, and to the right, of a range along, in elements."""
+    """Parts of a brick left and right of a range along, in elements."""
     end = brick.x + brick.columns
     parts = []
     for first, last in ((brick.x, min(end, left)), (max(brick.x, right), end)):

@@ -1,4 +1,4 @@
-"""Parts of a wall beside its bricks: a stiff cap, and strips of ground that settle."""
+"""Further bodies of a wall: a stiff cap, and strips of ground that settle."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CAP_STIFFNESS = 1e5
 
 
 def with_cap(stack: Stack, rows: int, *, is_guided: bool) -> Stack:
-    """Put a cap on bricks, as their last body.
+    """Add a cap on top of bricks, as the last body.
 
     It is `rows` elements high. A guided one stays level: its ends stand out by an
     element, and move as far along as the top does.
@@ -46,7 +46,7 @@ def with_cap(stack: Stack, rows: int, *, is_guided: bool) -> Stack:
 def on_strips(
     stack: Stack, ends: tuple[int, int], settlement: Array, friction: float
 ) -> Stack:
-    """Put bricks on strips of ground, of which those between two ends settle.
+    """Add strips of ground below bricks; strips between two ends settle.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def on_strips(
 
 
 def strips_below(bricks: Sequence[Brick], ends: tuple[int, int]) -> list[Brick]:
-    """Strips of ground below the lowest bricks, from the left, which begin at y = 0.
+    """Strips of ground below the lowest bricks, which begin at y = 0, from the left.
 
     Each is below a single brick, and ends where that does or at the `ends`, in
     elements. They have one row of elements: neighbours then have no pair of nodes.

@@ -1,4 +1,4 @@
-"""Rectangles into which a stack is cut: where they touch, and what lies open."""
+"""Rectangles into which a stack is cut: their joints and their free sides."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Span(NamedTuple):
 
 
 class CutRectangle(NamedTuple):
-    """A substructure: its rectangle, the number of its body, and its name in cuts."""
+    """A substructure: its rectangle, the index of its body, its name in cuts."""
 
     rectangle: Brick
     body: int
@@ -95,7 +95,7 @@ class CutRectangles:
         return [joint for joint in joints if joint.below is not None]
 
     def _covered_by(self, joints: Sequence[BrickJoint]) -> dict[tuple[int, str], Flags]:
-        """Elements of each side of a rectangle that joints cover, (elements,)."""
+        """Masks of elements under joints, (elements,), by rectangle and side."""
         covered = dict[tuple[int, str], Flags]()
         for joint in joints:
             for number, side in joint.sides:
@@ -135,14 +135,14 @@ class CutRectangles:
                     yield Span(side, first, last)
 
     def extent(self, number: int, side: str) -> tuple[int, int]:
-        """Elements along a side of a rectangle, and where it begins on the grid."""
+        """Number of elements along a side of a rectangle, and its start on the grid."""
         rectangle = self.each[number].rectangle
         if side in ("left", "right"):
             return rectangle.rows, rectangle.y
         return rectangle.columns, rectangle.x
 
     def _contacts_of(self, joints: Sequence[BrickJoint]) -> dict[str, list[BrickJoint]]:
-        """Joints of each contact by its name; those without pairs are left out."""
+        """Joints of each contact by name, without joints that have no pairs."""
         contacts = dict[str, list[BrickJoint]]()
         for joint in joints:
             if not self.is_within_body(joint) and len(self._pairs(joint)[0]):
@@ -173,7 +173,7 @@ class CutRectangles:
         return nodes[paired], self.stack.length * lengths[paired]
 
     def _left_out(self, joint: BrickJoint) -> tuple[bool, bool]:
-        """Check whether the first, and the last, node of a joint has no pair.
+        """Check whether the first, and whether the last, node of a joint has no pair.
 
         A lying joint has no pair at an end where the left or right side prescribes the
         normal displacement: any pressing force would be a solution there, and so would
@@ -198,7 +198,7 @@ class CutRectangles:
         )
 
     def body_of(self, number: int) -> int:
-        """Number of the body of a rectangle."""
+        """Index of the body of a rectangle."""
         return self.each[number].body
 
     def bodies(self, joint: BrickJoint) -> tuple[int, int | None]:
@@ -209,7 +209,7 @@ class CutRectangles:
         return above, self.each[joint.below].body
 
     def is_within_body(self, joint: BrickJoint) -> bool:
-        """Check whether both sides of a joint are of one body, which is glued there."""
+        """Check whether a joint is a glued cut inside one body."""
         above, below = self.bodies(joint)
         return above == below
 
@@ -256,7 +256,7 @@ class CutRectangles:
         return f"support and {brick}"
 
     def is_outermost(self, number: int, span: Span) -> bool:
-        """Check whether a span of an outer side lies as far out as any of that side."""
+        """Check whether no span of an outer side lies farther out than this one."""
         rectangle = self.each[number].rectangle
         if span.side == "bottom":
             return rectangle.y == 0

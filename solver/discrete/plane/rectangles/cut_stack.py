@@ -61,7 +61,7 @@ class _SideTrace(NamedTuple):
 
 
 def _node_numbers(grids: Sequence[Array]) -> list[Indices]:
-    """Numbers of the nodes of each body among those of all, (n_rows, n_columns)."""
+    """Indices of the nodes of each body among those of all, (n_rows, n_columns)."""
     numbers = list[Indices]()
     first = 0
     for grid in grids:
@@ -153,7 +153,7 @@ class CutStack:
             )
 
     def _own_nodes(self, number: int, nodes: Indices) -> Indices:
-        """Nodes of a substructure, (n_rows, n_columns), out of those of its body."""
+        """Nodes of a substructure, (n_rows, n_columns), from those of its body."""
         rectangle, body, _ = self.rectangles.each[number]
         brick = self.stack.rectangles[body]
         inside = rectangle._replace(x=rectangle.x - brick.x, y=rectangle.y - brick.y)
@@ -177,7 +177,7 @@ class CutStack:
         traces: tuple[_SideTrace, ...],
         has_force: bool,
     ) -> Operator:
-        """Operator of a part, from an earlier structure if it has the same.
+        """Operator of a part, from the cache if an earlier structure had an equal part.
 
         `has_force` tells operators apart.
         """
@@ -192,7 +192,7 @@ class CutStack:
         )
 
     def macro_basis(self, number: int) -> Array:
-        """Macro basis of one component on a piece by number, (n_pairs, n_macro).
+        """Macro basis of one component on a piece by index, (n_pairs, n_macro).
 
         Without columns where no macro forces balance. The substructure above gives the
         degree.
@@ -218,9 +218,9 @@ class CutStack:
         return legendre_basis(positions, mesh.slenderness(side), degree)
 
     def _traces(self) -> Iterator[dict[Hashable, _SideTrace]]:
-        """Traces of every substructure, side by side.
+        """Traces of every substructure: joints, sides, and the spring.
 
-        By the side and number of a piece, by the cut, by the span of an outer side, or
+        By the side and index of a piece, by the cut, by the span of an outer side, or
         by "spring". Contacts have both components, or with a support of known strength
         the one along it; cuts both; an outer side those that are prescribed; the foot
         under a spring both.

@@ -72,12 +72,12 @@ def _resultant(given: SideComponent, size: float) -> tuple[Array, Array]:
 
 
 def is_held_up(stack: Stack) -> bool:
-    """Check whether a side prescribes the vertical displacement."""
+    """Check whether the vertical displacement of a side is prescribed."""
     return any(side.y.prescribed for side in stack.sides.values())
 
 
 def is_upright(stack: Stack) -> bool:
-    """Check whether a side keeps the body from turning."""
+    """Check whether a side prevents rotation of the body."""
     sides = stack.sides
     return (
         sides["top"].y.prescribed
@@ -127,7 +127,7 @@ def loss_of_equilibrium(stack: Stack) -> tuple[float, str] | None:
 def _first_of(
     losses: Iterable[tuple[NDArray[np.bool_], str]], instants: Array
 ) -> tuple[float, str] | None:
-    """Time, s, and reason of the first of losses; of equal times the first reason.
+    """Time, s, and reason of the earliest of losses; the first reason at equal times.
 
     A loss is at which instants it is so, (n_instants,), and its reason.
     """
@@ -222,7 +222,7 @@ def rigid_rest(stack: Stack) -> Array | None:
 
 
 def _since_last(values: Array, known: Indices) -> Array:
-    """Values of the last known instant at every instant, and zero before the first.
+    """Values at the last known instant up to each instant; zero before the first.
 
     `values` are (n, n_instants), `known` the numbers of instants, ascending.
     """
@@ -256,7 +256,7 @@ def rigid_slide(stack: Stack, spring: Spring) -> Array:
 
 
 def _settled(gap: Array, shapes: Array, wanted: Array) -> Array:
-    """Motions under which the bedding carries the loads, (n_motions, n_instants).
+    """Rigid motions for which the bedding balances the loads, (n_motions, n_instants).
 
     Motions a with sum over points of shape * max(-(gap + shape' a), 0) = wanted. They
     minimise a convex energy; Newton's step goes as far as that falls. Where the points
@@ -287,7 +287,7 @@ def _settled(gap: Array, shapes: Array, wanted: Array) -> Array:
 
 
 def _step_length(opening: Array, step: Array, work: Array) -> Array:
-    """Factor on a step that minimises the energy of bedding and loads, (n_instants,).
+    """Step length that minimises the energy of bedding and loads, (n_instants,).
 
     `opening` and its change by the whole `step` are (n_points, n_instants), the `work`
     of the loads on it (n_instants,). The slope of the energy over the factor t is the

@@ -1,4 +1,4 @@
-"""Sides of bodies in the plane, supports and springs: they hold, move and load."""
+"""Sides, supports and springs of rectangular bodies, as data."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SETTLED = "settled support"
 
 @dataclass(frozen=True, eq=False)
 class SideComponent:
-    """Displacement or traction along a side, in one component.
+    """Prescribed displacement or traction along a side, in one component.
 
     At the distance s from its lower or left end it is mean + slope (2 s / length - 1).
 
@@ -73,13 +73,13 @@ class Side(NamedTuple):
 
     @property
     def is_zero(self) -> bool:
-        """Check whether all that is given is zero at all instants."""
+        """Check whether both components are zero at all instants."""
         return self.x.is_zero and self.y.is_zero
 
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """A rigid rough support below the stack, or the image of the stack.
+    """A rigid rough support below the stack, or the mirror image of the stack.
 
     Attributes
     ----------

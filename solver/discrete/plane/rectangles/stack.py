@@ -69,7 +69,7 @@ class Stack:
         farthest. "top" and "bottom" are all that lies open there to a traction, and
         what lies farthest up, or down, to a displacement.
     groups
-        Number of the group of each body, shape (bodies,), or None: bodies of one group
+        Index of the group of each body, shape (bodies,), or None: bodies of one group
         pass no macro forces to each other.
     elements, substructures
         Numbers for one body, along and up. Bodies on each other that all begin at the
@@ -133,7 +133,7 @@ class Stack:
     groups: Indices | None = None
 
     def __post_init__(self) -> None:
-        """Check all fields, and make sides free that are not given."""
+        """Check all fields, and add free sides where none are given."""
         check(
             self,
             length=POSITIVE,
@@ -202,12 +202,12 @@ class Stack:
 
     @cached_property
     def is_pile(self) -> bool:
-        """Check whether all bodies begin at the left, one on the other."""
+        """Check whether bodies lie one on the other, aligned at their left ends."""
         return not self.strips and not any(brick.x for brick in self.rectangles)
 
     @cached_property
     def grid(self) -> tuple[int, int]:
-        """Elements of all bodies together, along and up."""
+        """Size of all bodies together, in elements along and up."""
         return grid_of(self.rectangles)
 
     @property
@@ -277,7 +277,7 @@ class Stack:
 
     @property
     def _shown(self) -> StackLoop:
-        """Loop of what drives the bodies."""
+        """Loop of the load or displacement that drives the bodies."""
         if self._shows_settlement:
             return SettlementLoop(self.settlement)
         if self.tilt is not None and self.spring is not None:

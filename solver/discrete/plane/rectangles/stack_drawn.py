@@ -1,4 +1,4 @@
-"""Rectangular bodies as drawings show them: loads, motions and holds of their sides."""
+"""Arrows of loads and motions, and holds, of rectangular bodies for drawings."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from solver.discrete.structure import OUTWARD, Act, Hold, on_side
 
 
 def _open_sides(sides: Mapping[str, Side], support: Support | None) -> dict[str, Side]:
-    """Outer sides by name, without the bottom where a support replaces that."""
+    """Outer sides by name, without the bottom if there is a support."""
     open_sides = dict(sides)
     if support is not None:
         del open_sides["bottom"]
@@ -42,7 +42,7 @@ def acts_on_sides(
 def _act_on_side(
     given: SideComponent, side: str, component: int, rectangles: Sequence[Brick]
 ) -> Act:
-    """Load or displacement of a side: drawn at both ends if it is uneven."""
+    """Arrow of a load or displacement of a side, at both ends if it is not uniform."""
     is_normal = OUTWARD[side][component] != 0.0
     along = "xy"[component]
     towards = ((1.0, 0.0), (0.0, 1.0))[component]
@@ -82,7 +82,7 @@ def _act_on_side(
 
 
 def _on_bodies(side: str, points: Array, rectangles: Sequence[Brick]) -> Array:
-    """Points on a side, moved up or down onto the bodies that are there.
+    """Points on a side, moved up or down onto the outline of the bodies.
 
     Shape (n, 2) both, as shares of the length and height of all bodies.
     """
@@ -103,7 +103,7 @@ def _on_bodies(side: str, points: Array, rectangles: Sequence[Brick]) -> Array:
 
 
 def act_of_ground(settlement: Array, strips: Sequence[Brick], columns: int) -> Act:
-    """Settlement of strips of ground, in the middle of what settles most.
+    """Arrow of the settlement of strips of ground, in the middle of the largest one.
 
     `settlement` is that of each strip, shape (n_strips, n_instants), m; `columns` are
     the elements along all bodies.
@@ -128,7 +128,7 @@ def act_of_ground(settlement: Array, strips: Sequence[Brick], columns: int) -> A
 
 
 def act_of_weight(weight: Array) -> Act:
-    """Weight of all bodies together, shape (2, n_instants), N, in their middle."""
+    """Arrow of the weight of all bodies, shape (2, n_instants), N, in their middle."""
     size = np.hypot(*weight)
     towards = weight / np.where(size > 0.0, size, 1.0)
     return Act("body", "W", on_side("body", [0.5]), towards, size, "N")

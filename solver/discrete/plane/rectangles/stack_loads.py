@@ -17,7 +17,7 @@ from solver.discrete.plane.rectangles.sides import SideComponent
 def values_along(
     rectangles: CutRectangles, number: int, span: Span, given: SideComponent
 ) -> Array:
-    """Given displacement or traction at the nodes of a span of an outer side.
+    """Prescribed displacement or traction at the nodes of a span of an outer side.
 
     The span is of the rectangle of that number; shape (n_nodes, n_instants), m or Pa.
     """
@@ -49,7 +49,7 @@ class StackLoads:
         self._weight = cache(self._weight_of)
 
     def of(self, number: int, mesh: Rectangle) -> PartForce | None:
-        """Forces on the nodes of a rectangle by its number, or None."""
+        """Forces on the nodes of a rectangle by its index, or None."""
         stack = self._stack
         weight = None
         if self._rectangles.body_of(number) >= stack.strips:

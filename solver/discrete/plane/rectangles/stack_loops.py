@@ -1,4 +1,4 @@
-"""Hysteresis loops of rectangular bodies, by what drives them."""
+"""Hysteresis loops of rectangular bodies, for each kind of drive."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class SettlementLoop:
     axes: ClassVar[Axes] = ("Settlement", "m"), ("Force on the settled ground", "N")
 
     def of(self, problem: Problem) -> Loop:
-        """Loop of the strip that settles most, and of all contacts with such strips."""
+        """Loop of the strip that settles most, with forces of all settling strips."""
         most = np.abs(self.settlement).max(axis=1).argmax()
         names = [name for name in problem.contacts if name.startswith(SETTLED)]
         force = partial(_pressing_force, names)
@@ -60,7 +60,7 @@ class SlopeLoop:
     axes: ClassVar[Axes] = ("Angle of the slope", "°"), ("Spring force", "N")
 
     def of(self, problem: Problem) -> Loop:
-        """Loop over the angle, whatever the problem."""
+        """Loop of any problem over the angle."""
         return Loop(*self.axes, constant(np.degrees(self.tilt)), _spring_force)
 
 
@@ -141,7 +141,7 @@ StackLoop = SettlementLoop | SlopeLoop | MomentLoop | DeflectionLoop | ShearLoop
 def loop_on_ground(
     sides: Mapping[str, Side], length: float, bodies: int, strips: int
 ) -> ShearLoop:
-    """Loop of bodies on the ground: of a single one of the side that drives it.
+    """Loop of bodies on the ground; of a single body: of the side that moves it.
 
     `length` is that of all bodies together, m; `bodies` and `strips` are the numbers of
     all bodies and of the strips of ground among them.
@@ -158,7 +158,7 @@ def loop_on_ground(
 
 
 def loop_of_end(end: Side, count: int, height: float) -> MomentLoop | DeflectionLoop:
-    """Loop of what bends the right end, which the `count` longest bodies share.
+    """Loop of the load that bends the right end of the `count` longest bodies.
 
     `height` is that of one body, m.
     """

@@ -43,7 +43,7 @@ from solver.laws import (
 from solver.refusal import RefusedError, Words
 
 NO_BODY = -1
-"""In place of the number of a body: the support."""
+"""In place of the index of a body: the support."""
 
 
 def problem_of(stack: Stack) -> Problem:
@@ -90,7 +90,7 @@ def _is_moved(side: Side) -> bool:
 
 
 def _rest(stack: Stack, inside: Inside) -> Array | None:
-    """Displacement of the body that rests on its support, (n_dofs, n_instants), scaled.
+    """Displacement of a body at rest on its support, (n_dofs, n_instants), scaled.
 
     None where the body has not to be brought onto its support.
     """
@@ -129,7 +129,7 @@ def _glued(cut: CutStack, joint: BrickJoint) -> Perfect:
 
 
 class _Adjacent(NamedTuple):
-    """Bodies beside pairs of nodes.
+    """Bodies adjacent to pairs of nodes.
 
     Attributes
     ----------
@@ -146,7 +146,7 @@ class _Adjacent(NamedTuple):
 
     @classmethod
     def of(cls, cut: CutStack, pairs: JointPairs) -> _Adjacent:
-        """Bodies beside the pairs of joints."""
+        """Bodies adjacent to the pairs of joints."""
         joints = [cut.rectangles.joints[number] for number in pairs.pieces]
         both = [cut.rectangles.bodies(joint) for joint in joints]
         others = [NO_BODY if below is None else below for _, below in both]
@@ -158,7 +158,7 @@ class _Adjacent(NamedTuple):
 
 
 def _contact(cut: CutStack, numbers: Sequence[int]) -> Contact:
-    """Law of contacts by number: of bodies with the support, or with each other."""
+    """Law of contacts by index: of bodies with the support, or with each other."""
     pairs = JointPairs.of(cut, numbers)
     beside = _Adjacent.of(cut, pairs)
     return contact_of(
@@ -240,7 +240,7 @@ def _stiffness_beside(stack: Stack, beside: _Adjacent) -> BodyStiffness:
 
 
 def _spring(cut: CutStack, spring: Spring) -> Contact:
-    """Contact of a spring, which pushes the foot to the right as if from the left."""
+    """Contact law of a spring, which pushes the foot as if it stood on the left."""
     stack = cut.stack
     (number,) = [
         number for number, part in enumerate(cut.parts) if "spring" in part.traces
@@ -290,7 +290,7 @@ def _move_corners(
     component: int,
     moved: Array,
 ) -> None:
-    """Write the displacement of top and bottom into the corners of an upright side.
+    """Overwrite the corners of an upright side with displacements of top and bottom.
 
     Only where top or bottom prescribe the component; `number` is that of the
     substructure, `moved` the displacement of the side's nodes, (n_nodes, n_instants),

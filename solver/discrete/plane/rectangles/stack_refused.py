@@ -1,4 +1,4 @@
-"""Checks of rectangular bodies beside each other, of their sides and supports."""
+"""Checks of rectangular bodies together, of their sides and supports."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def check_sides(sides: Mapping[str, Side], instants: int, strips: int) -> None:
 
 
 def check_support(support: Support, bodies: int, nodes: int, instants: int) -> None:
-    """Refuse fields of a support that do not fit the bodies, nodes along, instants."""
+    """Refuse fields of a support that do not fit the bodies, nodes and instants."""
     along = Numbers(((nodes,),))
     check_value("Stack.support.gap", support.gap, along)
     friction = AnyOf(NON_NEGATIVE, Numbers(along.shapes, low=0.0))
