@@ -126,6 +126,13 @@ def test_a_rope_that_runs_has_the_ratio_of_its_angle_both_ways():
     assert creep == pytest.approx(1000.0 * (limit - 1.0) / (5e9 * 1e-4), rel=2e-3)
 
 
+def test_a_drum_carries_nothing_of_ends_that_are_pulled_alike():
+    """Rounding of the tensions was a torque of 4e-13 N m."""
+    run = finished(settings_of(tail="alike", elements=20, instants=5))
+    assert QUANTITIES["torque"](run) == 0.0
+    assert QUANTITIES["creep"](run) == 0.0
+
+
 def test_a_jack_reads_its_force_and_wedges_leave_the_known_one():
     settings = settings_of(**TENDON, elements=160)
     problem, reference, tensions = solved(settings)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from small_scenes import SMALL as SMALL_SCENES
 
+from solver.discrete.rope.rope import Rope
 from solver.latin import Solution, iterations
 from solver.latin.end.status import CANCELLED
 from solver.scenes import CATALOGUE, discretise
@@ -144,8 +145,29 @@ def test_wires_that_stretch_alike_rub_by_nothing_and_could_hold_by_all() -> None
     )
     for name in ("dissipation", "peak_slip", "ratchet", "holding_friction"):
         assert taken(name, run) == 0.0
-    # Half an element beside the clamp is held, and does not rub.
-    assert taken("holding_force", run) == pytest.approx(1500.0 * (1.0 - 0.5 / 6.0))
+    assert taken("holding_force", run) == pytest.approx(1500.0)
+
+
+@pytest.mark.parametrize("grip", ["force", "displacement"])
+@pytest.mark.parametrize("elements", [2, 7, 20])
+def test_wires_press_on_each_other_up_to_their_clamp(elements: int, grip: str) -> None:
+    """mu p L on any mesh: the node at the clamp, which does not rub, was left out."""
+    sizes = {"elements": elements, "substructures": 2, "instants": 11}
+    run = ran("strand", grip=grip, peak=300.0, **sizes)
+    assert taken("holding_force", run) == pytest.approx(1500.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("elements", [10, 23])
+def test_a_wire_of_a_rope_presses_from_clamp_to_end(elements: int) -> None:
+    """T sin^2(alpha) / R a metre of wire, of six around a core (Costello)."""
+    run = ran("rope", layers=1, tension=4e4, elements=elements, substructures=2)
+    structure = run.settings.structure()
+    assert isinstance(structure, Rope)
+    wire = structure.wires[0]
+    tension = float(wire.tension[-1])
+    across = math.sin(wire.layer_data.lay) ** 2 / wire.radius
+    exact = run.settings.friction * tension * across * wire.length
+    assert taken("holding_force", run) == pytest.approx(exact, rel=1e-9)
 
 
 def test_a_block_that_only_its_side_holds_presses_on_nothing() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import Array, without_residue
 from solver.discrete.plane.makers.band import Band
 from solver.settings.scene import Settings
 from solver.study.quantities.contact_measures import AT, instant_at
@@ -31,6 +31,15 @@ def _ends(run: FinishedRun) -> tuple[Array, Array]:
     return tensions[0], tensions[-1]
 
 
+def _carried(run: FinishedRun) -> Array:
+    """Tension that the drum carries, T2 - T1, (n_instants,), N; 0 where it is rounding.
+
+    Ends that are pulled alike leave rounding alone.
+    """
+    tail, pulled = _ends(run)
+    return without_residue(pulled - tail, np.abs([tail, pulled]))
+
+
 def _largest(run: FinishedRun, values: Array, at: float | None) -> float:
     """Value at a share of the interval, or the largest in size, of (n_instants,)."""
     if at is not None:
@@ -54,9 +63,8 @@ def tension_ratio(run: FinishedRun, at: float | None) -> float:
 @quantity("Torque on the drum", "N·m", parameter=AT, applies=_is_drum)
 def torque(run: FinishedRun, at: float | None) -> float:
     """Torque of the band on the drum that is largest in size, N m: (T2 - T1) R."""
-    tail, pulled = _ends(run)
     radius = run.settings.values()["drum_radius"]
-    return _largest(run, (pulled - tail) * radius, at)
+    return _largest(run, _carried(run) * radius, at)
 
 
 @quantity("Creep of a belt that runs on", parameter=AT, applies=_is_drum)
@@ -67,6 +75,5 @@ def creep(run: FinishedRun, at: float | None) -> float:
     slower than it comes, (T2 - T1) / (E A): as much of it passes both ends, stretched
     by more and by less (K. L. Johnson, Contact Mechanics, 1985, 8.3).
     """
-    tail, pulled = _ends(run)
     values = run.settings.values()
-    return _largest(run, (pulled - tail) / (values["young"] * values["section"]), at)
+    return _largest(run, _carried(run) / (values["young"] * values["section"]), at)

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import RESIDUE, Array, Flags, Indices
+from solver.discrete.rods.rods import Rods
+from solver.discrete.rope.rope import Rope
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
 from solver.settings.scene import Settings
@@ -121,7 +123,45 @@ def _hold(run: FinishedRun, name: str, determinate: Flags) -> _Hold:
     forward = ((status == 1) | is_free).all(axis=0)
     backward = ((status == -1) | is_free).all(axis=0)
     slides = (forward | backward) & ~is_free.all(axis=0)
-    return _Hold(pressing.sum(axis=0), friction.sum(axis=0), slides)
+    pressing_beside, friction_beside = _at_held_ends(run, name)
+    return _Hold(
+        pressing=pressing.sum(axis=0) + pressing_beside @ pressing,
+        carried=friction.sum(axis=0) + friction_beside @ friction,
+        slides=slides,
+    )
+
+
+def _at_held_ends(run: FinishedRun, name: str) -> tuple[Array, Array]:
+    """Forces at held ends that have no points, over those of the points beside them.
+
+    Ends of wires that are held together do not rub in the discrete problem. They are
+    pressed like what is beside them, and friction goes on evenly up to them, as it does
+    up to the clamp of a body (`solver.discrete.driven_friction`); springs between them
+    are not strained. Shares of pressing force and of friction, (n_points,) both.
+    """
+    law = run.problem.rubbing[name]
+    lengths = law.by_point(law.weights)
+    pressing = np.zeros_like(lengths)
+    # The first and the last point are those beside the ends.
+    for point, half in _held_lengths(run, name).items():
+        pressing[point] += half / lengths[point]
+    if law.tangential.compliance is None:
+        return pressing, pressing
+    return pressing, np.zeros_like(pressing)
+
+
+def _held_lengths(run: FinishedRun, name: str) -> dict[int, float]:
+    """Lengths, m, of held ends without points, by the points beside them: 0 or -1."""
+    structure = run.settings.structure()
+    if isinstance(structure, Rope):
+        wire = structure.wires[run.problem.rubbing.number_of[name]]
+        half = 0.5 * wire.length / structure.elements
+        return {0: half, -1: half}
+    if isinstance(structure, Rods) and structure.wires > 1:
+        half = 0.5 * structure.length / structure.elements
+        ends = {0: structure.left, -1: structure.right}
+        return {point: half for point, end in ends.items() if end.is_prescribed}
+    return {}
 
 
 def _pressing_by_friction(run: FinishedRun, name: str) -> Array:
