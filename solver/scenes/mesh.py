@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from functools import cache, cached_property
 from itertools import chain
@@ -394,8 +395,9 @@ class MeshSettings(PlaneSettings):
         parts = []
         for line, deeds in self.deeds.items():
             if deeds and deeds != ("free",):
-                parts.append(f"{taken_apart(line)[0]} {' and '.join(deeds)}")
-        return f"{bodies} of a mesh {touch}, with {shared.listed(parts)}."
+                done = [re.sub(r" ([xy])$", r" along \1", deed) for deed in deeds]
+                parts.append(f"“{taken_apart(line)[0]}” {' and '.join(done)}")
+        return f"{bodies} of a mesh {touch}; sides: {shared.listed(parts)}."
 
 
 def _of_setting(name: str, refusal: RefusedError) -> SettingError:

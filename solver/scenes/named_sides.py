@@ -168,7 +168,9 @@ class MeshSides:
                 other.body for other in self.mesh.sides if other.name == line.name
             }
             for deed in self.deeds[line.name]:
-                name = f"{taken_apart(line.name)[0]} {deed}"
+                # Titles of quantities name a side that moves: "Force on top along y".
+                done = deed.replace("moved", "along")
+                name = f"{taken_apart(line.name)[0]} {done}"
                 if len(bodies) > 1:
                     name = f"{name}, {self.mesh.names[line.body]}"
                 counts[name] = counts.get(name, 0) + 1
