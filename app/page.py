@@ -37,6 +37,8 @@ COMPACT = {
     "@media (max-width: 600px)": {
         "& header .title": {"display": "none"},
         "& header": {"overflowX": "auto"},
+        "& header .MuiToolbar-root": {"padding": "0 4px 0 14px"},
+        "& header .MuiIconButton-edgeStart": {"marginRight": 0},
     },
     # In a narrow window the controls are a sheet below the picture, which stays in
     # sight while they are moved.
@@ -239,15 +241,32 @@ class Page:
         )
         linked_to(self.state, "tab", tabs)
         space = pn.layout.HSpacer()
-        look = {"margin": 0, **looks("in-header")}
-        buttons = [
-            pmui.IconButton(icon=icon, description=title, on_click=action, **look)
-            for title, (icon, action) in actions.items()
-        ]
+        # A phone has room for the first button: the others are in a list there.
+        buttons = []
+        roles = ["in-header"]
+        for title, (icon, action) in actions.items():
+            look = {"margin": 0, **looks(*roles)}
+            buttons.append(
+                pmui.IconButton(icon=icon, description=title, on_click=action, **look)
+            )
+            roles = ["in-header", "of-desk"]
+        others = list(actions)[1:]
+        more = pmui.MenuButton(
+            label="",
+            icon="more_vert",
+            icon_size="24px",
+            items=[{"label": title, "icon": actions[title][0]} for title in others],
+            variant="text",
+            description="More",
+            on_click=lambda item: actions[item["label"]][1](None),
+            margin=0,
+            **looks("in-header", "of-phone"),
+        )
         return pn.Row(
             tabs,
             space,
             *buttons,
+            more,
             AtOnce(),
             sizing_mode="stretch_width",
             align="center",

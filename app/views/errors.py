@@ -40,7 +40,9 @@ NAMED = 1.25
 """Length of the axis of iterations over that of the curves, at whose ends their names
 stand."""
 APART = 1.05
-"""Least distance of two of these names over their type size."""
+OFF = 0.6
+"""Least distance of two of these names over their type size, and of a name from the
+line of the goal over that."""
 SEEN_IN_TIME = (1e-2, 2.0)
 """Errors over run time that are in sight in any case."""
 SHORTEST = 20
@@ -189,7 +191,8 @@ class Convergence(ErrorPlot):
             names.append((foot, float(iteration), "exact", ERROR))
         names.sort()
         apart = APART * self.type_size / self._size["inner_height"]
-        heights = spread([height for height, *_ in names], apart)
+        (goal,) = self._heights([newest.run.settings.accuracy])
+        heights = off(float(goal), [height for height, *_ in names], apart)
         self.fill(
             "names",
             x=[x for _, x, *_ in names],
@@ -303,16 +306,31 @@ class Convergence(ErrorPlot):
         self._plot("ghost", past, "iteration", column, self.ghost_name)
 
 
-def spread(heights: Sequence[float], apart: float) -> Floats:
-    """Ascending heights between 0 and 1, moved until they are `apart`, shape (n,).
+def off(line: float, heights: Sequence[float], apart: float) -> Floats:
+    """Ascending heights, moved until they are `apart` and off a line, shape (n,).
+
+    A height stays on its side of the line as long as there is room.
+    """
+    count = len(heights)
+    below = int(np.searchsorted(heights, line))
+    room_below = int(max(line / apart + 0.5 - OFF, 0.0))
+    room_above = int(max((1.0 - line) / apart - OFF, 0.0))
+    below = min(max(below, count - room_above), room_below, count)
+    lower = spread(heights[:below], apart, 0.0, min(line + (1.0 - OFF) * apart, 1.0))
+    upper = spread(heights[below:], apart, max(line + (OFF - 0.5) * apart, 0.0), 1.0)
+    return np.concatenate([lower, upper])
+
+
+def spread(heights: Sequence[float], apart: float, low: float, high: float) -> Floats:
+    """Ascending heights in a range, moved until they are `apart`, shape (n,).
 
     Half of that is free below the lowest one.
     """
     steps = apart * np.arange(len(heights))
-    raised = np.maximum(heights, 0.5 * apart)
+    raised = np.maximum(heights, low + 0.5 * apart)
     moved = np.maximum.accumulate(raised - steps)
     # What was pushed beyond the upper end goes down, and others before it.
-    highest = 1.0 - apart * len(heights)
+    highest = high - apart * len(heights)
     return np.asarray(np.minimum(moved, highest) + steps)
 
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from app.views.picture import Columns, Picture
+from solver.discrete.structure import Act
 
-PULLED = "pulled here"
 RUBS = "↑ rubs here"
 SOLVER = "the solver corrects a guess\nof the whole motion"
 ASIDE = 8.0
@@ -35,12 +35,13 @@ def hints_of(picture: Picture) -> Columns:
     if picture.draggable:
         driving = max(picture.draggable, key=_change)
         x = float(driving.points[:, 0].mean())
+        acts = _word_of(driving.act)
         if length > BROAD:
-            texts.append(f"{PULLED} →")
+            texts.append(f"{acts} →")
             anchors.append(np.array([x - ASIDE, 0.5 * top]))
             aligns.append("right")
         else:
-            text = f"↖ {PULLED}"
+            text = f"↖ {acts}"
             texts.append(text)
             # It ends within the picture.
             right = layout.width - layout.origin[0]
@@ -56,6 +57,20 @@ def hints_of(picture: Picture) -> Columns:
     anchors.append(rubbing - [0.0, BELOW])
     x, y = picture.page(np.array(anchors)).T
     return {"x": x, "y": y, "text": texts, "text_align": aligns}
+
+
+def _word_of(act: Act) -> str:
+    """Word for what a load does throughout its path, where it acts."""
+    if act.unit in ("m", "1/m"):
+        return "moved here"
+    low = float(act.values.min())
+    high = float(act.values.max())
+    if low < 0.0 < high:
+        return "pulled to and fro"
+    outward = float(np.dot(np.reshape(act.towards, (-1, 2))[0], act.away))
+    if outward * (low + high) < 0.0:
+        return "pushed here"
+    return "pulled here"
 
 
 def _change(arrows: Any) -> float:

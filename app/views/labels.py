@@ -17,7 +17,16 @@ from app.views.colors import FORCE, REFERENCE
 from app.views.colors import GROUND as GROUND_COLOR
 from app.views.layout import EACH, FOOTING, GROUND, is_opposite
 from app.views.picture import Columns, Picture
-from app.views.words import Word, around, box_of, in_rows, inside, lies_on, meets
+from app.views.words import (
+    Word,
+    around,
+    box_of,
+    in_rows,
+    inside,
+    is_inside,
+    lies_on,
+    meets,
+)
 from solver.arrays import Array
 from solver.discrete.structure import Act
 from solver.files.amounts import number
@@ -51,7 +60,7 @@ def labels_of(picture: Picture) -> tuple[Columns, Columns]:
         words += _name_of_joint(picture, obstacles)
     if picture.description.tilt is not None:
         words.append(_slope(picture))
-    words = _apart(inside(picture.layout, words), obstacles)
+    words = _apart(picture, inside(picture.layout, words), obstacles)
     x, y = np.reshape([word.anchor for word in words], (-1, 2)).T
     columns = {
         "x": x,
@@ -191,30 +200,41 @@ def _leaders(picture: Picture, words: Sequence[Word], obstacles: Obstacles) -> C
 
     None where the line would lie on other words or arrows.
     """
-    layout = picture.layout
     columns: Columns = {"xs": [], "ys": []}
+    for word in words:
+        line = _leader(picture, word)
+        others = [other for other in words if other is not word]
+        if len(line) and not _is_cut(line, others, obstacles):
+            columns["xs"].append(line[:, 0].tolist())
+            columns["ys"].append(line[:, 1].tolist())
+    return columns
+
+
+def _leader(picture: Picture, word: Word) -> Array:
+    """Line from words of a weight to the tail of its arrow, (2, 2), px.
+
+    It has no points where other words are given, or the arrow is near.
+    """
+    layout = picture.layout
     for arrows in picture.arrows:
         if arrows.act.side != "body" or not len(arrows.lines):
             continue
-        text = text_of(arrows.act, picture.now)
+        if word.text != text_of(arrows.act, picture.now):
+            continue
         tail = picture.page(arrows.lines[0, 0])
-        others = [word for word in words if word.text != text]
-        for word in words:
-            if word.text != text:
-                continue
-            low, high = box_of(layout, word)
-            # From the point of the words that is nearest.
-            begin = np.clip(tail, low, high)
-            way = tail - begin
-            length = float(np.hypot(*way))
-            if length < FAR * layout.row:
-                continue
-            shares = np.linspace(0.1, 0.9, ALONG)[:, None]
-            points = begin + shares * way
-            if not obstacles.block(points, others):
-                columns["xs"].append([begin[0], tail[0]])
-                columns["ys"].append([begin[1], tail[1]])
-    return columns
+        # From the point of the words that is nearest.
+        begin = np.clip(tail, *box_of(layout, word))
+        if np.hypot(*(tail - begin)) >= FAR * layout.row:
+            return np.stack([begin, tail])
+    return np.zeros((0, 2))
+
+
+def _is_cut(line: Array, others: Sequence[Word], obstacles: Obstacles) -> bool:
+    """Check whether other words or handles lie on a line, (2, 2), px, or (0, 2)."""
+    if not len(line):
+        return False
+    shares = np.linspace(0.1, 0.9, ALONG)[:, None]
+    return obstacles.block(line[0] + shares * (line[1] - line[0]), others)
 
 
 def _slope(picture: Picture) -> Word:
@@ -247,7 +267,10 @@ def _name_of_ground(picture: Picture) -> list[Word]:
 
 
 def _name_of_joint(picture: Picture, obstacles: Obstacles) -> list[Word]:
-    """Name of the selected joint of bodies of any shape, where it has room."""
+    """Name of the selected joint of bodies of any shape, where it has room.
+
+    Titles of plots name the joint, too: on bodies it would hide what it names.
+    """
     layout = picture.layout
     line = picture.halo
     # Where bodies are small the name would cover them.
@@ -260,7 +283,9 @@ def _name_of_joint(picture: Picture, obstacles: Obstacles) -> list[Word]:
     for name in _names_at_ends(picture, line):
         # Beside a joint that ends within bodies the next row may be free.
         places += [name, *in_rows(layout, name, 1)]
-    return [min(places, key=obstacles.covered_by)]
+    places += _names_aside(picture, line)
+    free = [place for place in places if not obstacles.covered_by(place)]
+    return free[:1]
 
 
 def _names_at_ends(picture: Picture, line: Array) -> list[Word]:
@@ -283,18 +308,42 @@ def _names_at_ends(picture: Picture, line: Array) -> list[Word]:
     return names
 
 
-def _apart(words: Sequence[Word], obstacles: Obstacles) -> list[Word]:
+def _names_aside(picture: Picture, line: Array) -> list[Word]:
+    """The name of a joint aside of each end of its line, (n, 2), px: of one in a notch.
+
+    It stands in the row of that end, or in the next one.
+    """
+    layout = picture.layout
+    names = []
+    for end in picture.page(line[[0, -1]]):
+        for rows in (0, 1, -1):
+            for side, align in ((1, "left"), (-1, "right")):
+                anchor = np.add(end, [side * NAME, rows * layout.row])
+                name = Word(picture.selected, anchor, align, REFERENCE)
+                if is_inside(layout, name):
+                    names.append(name)
+    return names
+
+
+def _apart(picture: Picture, words: Sequence[Word], obstacles: Obstacles) -> list[Word]:
     """Words, moved up, down or aside, off earlier ones and off arrows.
 
-    They go to the next place that bodies leave free, too, if there is one.
+    They go to the next place that bodies leave free, too, if there is one, and from
+    which a line may lead to an arrow that is far.
     """
-    layout = obstacles.layout
+    layout = picture.layout
     placed: list[Word] = []
-    for word in words:
-        moved = word
-        if meets(layout, word, placed) or obstacles.has_arrows_below(word):
-            places = around(layout, word, MOST_ROWS)
-            free = [one for one in places if not meets(layout, one, placed)]
-            moved = min(free, key=obstacles.covered_by, default=word)
-        placed.append(moved)
+    for index, word in enumerate(words):
+        others = [*placed, *words[index + 1 :]]
+
+        def burden(place: Word, others: Sequence[Word] = others) -> tuple[bool, bool]:
+            line = _leader(picture, place)
+            return obstacles.covered_by(place), _is_cut(line, others, obstacles)
+
+        places = around(layout, word, MOST_ROWS)
+        if not (meets(layout, word, placed) or obstacles.has_arrows_below(word)):
+            # It stays unless its line alone is cut.
+            places = [word, *places] if burden(word)[1] else [word]
+        free = [one for one in places if not meets(layout, one, placed)]
+        placed.append(min(free, key=burden, default=word))
     return placed

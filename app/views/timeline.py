@@ -21,9 +21,11 @@ from solver.files.amounts import Unit, number, unit_for
 
 PATHS = {"first": FORCE, "second": "#7A7A7A", "third": "#A0A0A0", "fourth": "#56B4E9"}
 """Colours of the paths; further paths are not drawn."""
-LOW = -1.5
-HIGH = 2.7
-"""Ends of the axis up: paths lie between -1 and 1, and their names above them."""
+LOW = -1.7
+HIGH = 3.2
+MARKED = 1.4
+"""Ends of the axis up, and upper end of the line of an instant: paths lie between -1
+and 1, and their names above that line."""
 
 
 class Timeline(View):
@@ -44,9 +46,9 @@ class Timeline(View):
         axis.minor_tick_line_alpha = 0.0
         self.add("area", "VArea", "x y2", y1=0, color=FORCE, alpha=0.16)
         self.add("paths", "MultiLine", "xs ys line_color line_width")
-        look = {"y0": LOW, "y1": HIGH, "color": ERROR, "alpha": 0.5}
+        look = {"y0": LOW, "y1": MARKED, "color": ERROR, "alpha": 0.5}
         self.add("instant", "Segment", "", also="x", x0="x", x1="x", **look)
-        self.add("now", "Scatter", color=FORCE, size=13)
+        self.add("now", "Scatter", color=FORCE, size=11)
         self.mark(PATHS | {"time": UNSEEN})
         self.legend(*PATHS, "time", place="center")
         # As the range has bounds, the tool pans nothing. It only keeps a touch from

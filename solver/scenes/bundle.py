@@ -86,7 +86,7 @@ class BundleSettings(PlaneSettings):
         "Largest force by which a plate presses on the highest wires, for a metre of "
         "their length. 0: there is no plate.",
         "hold",
-        places=("plate y",),
+        places=("plate along y",),
     )
     displacement, shear_load = shared.sized_path(
         "shear_load",
@@ -98,7 +98,7 @@ class BundleSettings(PlaneSettings):
         "Largest displacement of the plate along it.",
         "delayed",
         applies=lambda settings: settings.has_plate,
-        places=("plate x",),
+        places=("plate along x",),
     )
     band = LOAD.quantity(
         1.0,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from functools import cache, cached_property
 from itertools import chain
@@ -394,8 +395,9 @@ class MeshSettings(PlaneSettings):
         parts = []
         for line, conditions in self.conditions.items():
             if conditions and conditions != ("free",):
-                parts.append(f"{split_phrase(line)[0]} {' and '.join(conditions)}")
-        return f"{bodies} of a mesh {touch}, with {shared.listed(parts)}."
+                said = [re.sub(r" ([xy])$", r" along \1", each) for each in conditions]
+                parts.append(f"“{split_phrase(line)[0]}” {' and '.join(said)}")
+        return f"{bodies} of a mesh {touch}; sides: {shared.listed(parts)}."
 
 
 def _of_setting(name: str, refusal: RefusedError) -> SettingError:

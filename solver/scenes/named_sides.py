@@ -168,7 +168,9 @@ class MeshSides:
                 other.body for other in self.mesh.sides if other.name == line.name
             }
             for condition in self.conditions[line.name]:
-                name = f"{split_phrase(line.name)[0]} {condition}"
+                # Titles of quantities name a side that moves: "Force on top along y".
+                done = condition.replace("moved", "along")
+                name = f"{split_phrase(line.name)[0]} {done}"
                 if len(bodies) > 1:
                     name = f"{name}, {self.mesh.names[line.body]}"
                 counts[name] = counts.get(name, 0) + 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ import numpy as np
 from solver.files.disk import write
 from solver.files.saved import dump
 from solver.scenes.shared import listed
-from solver.settings.definitions import properties_of
+from solver.settings.definitions import properties_of, title_of
 from solver.study.fit import Combination, Fit
 from solver.study.measured_loop import MeasuredLoop, csv_of
 from solver.study.page import (
@@ -39,18 +40,33 @@ FILES = PARAMETERS, LOOP, SETTINGS, PAGE
 def lines(fit: Fit, measured: MeasuredLoop) -> list[str]:
     """Lines on a fit: the rows of its table, then sentences."""
     return [
-        *aligned(_rows(fit)).splitlines(),
+        *aligned(_rows(fit, _keys(fit))).splitlines(),
         *messages(fit),
         _distances(fit, measured),
     ]
 
 
-def messages(fit: Fit) -> list[str]:
-    """Sentences on settings that are not determined, and on the nearest run."""
-    sentences = [_known(combination) for combination in fit.together]
-    sentences += _lost(fit)
-    sentences += _bounds(fit)
-    sentences += _for_the_mesh(fit)
+def _keys(fit: Fit) -> dict[str, str]:
+    """Keys of the fitted settings, as commands and files have them, by themselves."""
+    return {name: name for name in fit.names}
+
+
+def _titles(fit: Fit) -> dict[str, str]:
+    """Titles of the fitted settings, as the page has them, by their keys."""
+    definitions = fit.settings.definitions()
+    return {name: title_of(definitions[name]) for name in fit.names}
+
+
+def messages(fit: Fit, called: Mapping[str, str] | None = None) -> list[str]:
+    """Sentences on settings that are not determined, and on the nearest run.
+
+    `called` has the names of settings for a reader, by their keys; by default these.
+    """
+    called = called or _keys(fit)
+    sentences = [_known(combination, called) for combination in fit.together]
+    sentences += _lost(fit, called)
+    sentences += _bounds(fit, called)
+    sentences += _for_the_mesh(fit, called)
     nearest = fit.nearest
     # A loop fitted under another path than the measured one says little.
     given = nearest.beside.figures(nearest.run.iterate)["distance_given"]
@@ -62,12 +78,12 @@ def messages(fit: Fit) -> list[str]:
     return sentences
 
 
-def _lost(fit: Fit) -> list[str]:
+def _lost(fit: Fit, called: Mapping[str, str]) -> list[str]:
     """Sentence on settings that are not determined; none where all are."""
     lost = []
     for name, error in zip(fit.names, fit.errors, strict=True):
         if math.isinf(error):
-            lost.append(name)
+            lost.append(called[name])
     if not lost:
         return []
     names = listed(lost)
@@ -82,12 +98,12 @@ def _lost(fit: Fit) -> list[str]:
     ]
 
 
-def _for_the_mesh(fit: Fit) -> list[str]:
+def _for_the_mesh(fit: Fit, called: Mapping[str, str]) -> list[str]:
     """Sentence on settings that the mesh hides; none where there is no such setting."""
     hidden = []
     for name, is_hidden in zip(fit.names, fit.for_the_mesh, strict=True):
         if is_hidden:
-            hidden.append(name)
+            hidden.append(called[name])
     if not hidden:
         return []
     return [
@@ -97,39 +113,43 @@ def _for_the_mesh(fit: Fit) -> list[str]:
     ]
 
 
-def _known(combination: Combination) -> str:
+def _known(combination: Combination, called: Mapping[str, str]) -> str:
     """Sentence on a known combination of settings that are not known by themselves."""
     if math.isnan(combination.value):
-        return f"Only a combination of {listed(list(combination.powers))} is known."
+        parts = [called[name] for name in combination.powers]
+        return f"Only a combination of {listed(parts)} is known."
     margin = 100.0 * combination.error
     ends = f"from {combination.lower:.4g} to {combination.upper:.4g}"
+    product = _product(combination, called)
     return (
-        f"Only {_product(combination)} is known: {combination.value:.6g} in SI units, "
+        f"Only {product} is known: {combination.value:.6g} in SI units, "
         f"with a standard error of {margin:.2g} % ({ends} with two), while each is "
         f"within a factor of {combination.factor:g} of its value."
     )
 
 
-def _product(combination: Combination) -> str:
+def _product(combination: Combination, called: Mapping[str, str]) -> str:
     """Text of a product of powers of settings."""
     factors = []
     for name, power in combination.powers.items():
         if power == 1.0:
-            factors.append(name)
+            factors.append(called[name])
         else:
-            factors.append(f"{name}^{power:g}")
+            factors.append(f"{called[name]}^{power:g}")
     return " * ".join(factors)
 
 
-def _bounds(fit: Fit) -> list[str]:
+def _bounds(fit: Fit, called: Mapping[str, str]) -> list[str]:
     """Sentences on settings of which one end alone is known."""
     sentences = []
     for name, lower, upper in zip(fit.names, fit.lower, fit.upper, strict=True):
         unit = properties_of(fit.settings.definitions()[name]).unit
         if math.isfinite(lower) and math.isinf(upper):
-            sentences.append(f"{name} is at least {lower:.3g} {unit}".rstrip() + ".")
+            bound = f"{called[name]} is at least {lower:.3g} {unit}"
+            sentences.append(bound.rstrip() + ".")
         elif math.isfinite(upper) and math.isinf(lower):
-            sentences.append(f"{name} is at most {upper:.3g} {unit}".rstrip() + ".")
+            bound = f"{called[name]} is at most {upper:.3g} {unit}"
+            sentences.append(bound.rstrip() + ".")
     return sentences
 
 
@@ -152,19 +172,19 @@ def _percent(distance: float) -> str:
     return f"{100.0 * distance:.4g} %"
 
 
-def _rows(fit: Fit) -> list[list[str]]:
+def _rows(fit: Fit, called: Mapping[str, str]) -> list[list[str]]:
     """Table of the settings: value, standard error, ends and correlations."""
     others: tuple[str, ...] = ()
     if len(fit.names) > 1:
         others = fit.names
     head = ["setting", "value", "standard error", "two of them: from", "to", "start"]
-    table = [head + [f"with {name}" for name in others]]
+    table = [head + [f"with {called[name]}" for name in others]]
     for name, unit, start, value, error, lower, upper, *correlation in _entries(fit):
         shown = "not known alone"
         if math.isfinite(error):
             shown = f"{error:.2g}"
         cells = [
-            name,
+            called[name],
             f"{value:.6g} {unit}".strip(),
             shown,
             _end(lower),
@@ -258,7 +278,7 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> None:
     write_loop(fit.nearest.run, folder)
     write(folder / SETTINGS, dump(fit.settings))
     sentences = [
-        *messages(fit),
+        *messages(fit, _titles(fit)),
         _distances(fit, measured),
         f"{measured.source}: {measured.message}",
     ]
@@ -268,7 +288,7 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> None:
         [PlotSection("Loop and differences", _panels(fit, measured))],
         title=f"{fit.settings.scene.capitalize()} fitted to a loop",
         sentences=sentences,
-        rows=_rows(fit),
+        rows=_rows(fit, _titles(fit)),
         settings=dump(fit.settings),
     )
 

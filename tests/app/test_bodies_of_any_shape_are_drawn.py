@@ -328,6 +328,34 @@ def test_the_weight_of_a_wall_is_read_beside_it_and_not_at_its_pressure() -> Non
     assert corners[:, 1].min() < box[:, 1].mean() < corners[:, 1].max()
 
 
+@pytest.mark.parametrize("interface", ["left flank", "right flank"])
+def test_the_name_of_a_joint_in_a_notch_lies_beside_its_end_and_on_no_body(
+    interface: str,
+) -> None:
+    settings = default_settings("mesh").replace(mesh="dovetail", instants=9)
+    frame = ran(settings, ends=False)
+    view = shown(frame, 0.5)
+    view.lay_out(430.0, 360.0)
+    view.update(frame, Selection(0.5, interface), None)
+    picture = view.picture
+    assert picture is not None
+    (box,) = (box for text, box in boxes_of_words(view) if text == interface)
+    corners = picture.page(picture.nodes[frame.run.geometry.cells])
+    assert not meet(box, corners.min(axis=1), corners.max(axis=1))
+    top = picture.page(picture.halo)[:, 1].argmax()
+    end = picture.page(picture.halo)[top]
+    assert np.hypot(*(np.clip(end, *box) - end)) < 30.0
+
+
+def test_the_words_of_a_weight_have_a_line_to_it_on_a_phone() -> None:
+    frame = ran(default_settings("wall").replace(instants=9), ends=False)
+    view = shown(frame, 0.5)
+    view.lay_out(390.0, 240.0)
+    for phase in (0.3, 0.5, 0.75, 1.0):
+        view.update(frame, Selection(phase), None)
+        assert len(view.sources["leaders"].data["xs"]) == 1
+
+
 def test_an_end_that_is_moved_at_an_angle_has_one_arrow_along_its_way() -> None:
     changes = {"guide": "duct", "driven": "moved", "pull_load": "jack", "wrap": 60.0}
     settings = default_settings("belt").replace(**changes)
@@ -347,7 +375,7 @@ def test_a_figure_is_zero_where_an_iterate_leaves_next_to_nothing() -> None:
     loop = frame.loop.copy()
     loop[1, 0] = 1e-6 * np.abs(loop[1]).max()
     line = figures_line(replace(frame, loop=loop), Selection(0.0))
-    assert re.search(r"Force on plate x .*>0 k?N<", line), line
+    assert re.search(r"Force on plate along x .*>0 k?N<", line), line
 
 
 def test_a_plate_that_is_held_at_both_ends_has_rollers_at_each() -> None:

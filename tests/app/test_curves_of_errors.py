@@ -83,6 +83,29 @@ def test_curves_of_errors_are_named_at_their_ends_and_names_stay_apart() -> None
     assert max(names["x"]) < 0.9 * view.figure.x_range.end
 
 
+@pytest.mark.parametrize("end", [0.1, 0.02, 0.0101, 0.0099, 0.003, 1e-4])
+@pytest.mark.parametrize("size", ["12px", "19px"])
+def test_names_of_curves_lie_on_no_line_of_the_goal(end: float, size: str) -> None:
+    last = frames_of("bar")[1]
+    count = len(last.history["iteration"])
+    history = {
+        name: np.geomspace(1.0, end * (1.0 + 0.1 * number), count)
+        for number, name in enumerate(CURVES)
+    }
+    history["iteration"] = last.history["iteration"]
+    view = view_of(Convergence, replace(last, history=history))
+    view.magnify(size)
+    view.update(*(replace(last, history=history), Selection(), None))
+    names = view.sources["names"].data
+    assert len(names["y"]) == len(CURVES)
+    heights = on_plot(view, names["x"], names["y"])[:, 1]
+    ((_, goal),) = on_plot(view, [0.0], view.sources["goal"].data["y"])
+    assert np.abs(heights - goal).min() > 0.55 * view.type_size
+    assert np.diff(np.sort(heights)).min() > view.type_size
+    assert heights.min() > 0.0
+    assert heights.max() < HEIGHT
+
+
 def on_plot(view: Convergence, x: Any, y: Any) -> np.ndarray:
     """Points of a plot of errors, px, (n, 2)."""
     axis = view.figure.y_range

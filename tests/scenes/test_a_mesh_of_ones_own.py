@@ -285,7 +285,8 @@ def test_a_file_is_read_where_a_command_names_it(tmp_path: Path) -> None:
     settings, _ = settings_from_command("mesh", [f"mesh={path}"])
     assert settings.parts.names == ("lower", "upper")
     assert settings.sentence() == (
-        "2 bodies of a mesh rub on each other, with bottom held and top moved y."
+        "2 bodies of a mesh rub on each other; "
+        "sides: “bottom” held and “top” moved along y."
     )
 
 

@@ -146,7 +146,7 @@ def test_groups_of_gmsh_in_a_file_of_abaqus_are_bodies_and_sides() -> None:
     # A word within another is none.
     assert split_phrase("withheld") == ("withheld", ())
     settings = MESH.checked({"mesh": as_text(mesh)})
-    assert "bottom held and lid moved x" in settings.sentence()
+    assert "“bottom” held and “lid” moved along x" in settings.sentence()
 
 
 @pytest.mark.parametrize("line", ["*INCLUDE, INPUT=a", "*include,input=a", "*ELEMENT"])

@@ -218,12 +218,14 @@ class Wires:
         """Load of a force downwards on the plate, (n_instants,), N."""
         top = self.plate.top
         pressure = force / float(self.plate.mesh.shares(top).sum())
-        return Load.of_pressure("plate y", len(self.centres), bodies[-1], top, pressure)
+        return Load.of_pressure(
+            "plate along y", len(self.centres), bodies[-1], top, pressure
+        )
 
     def moved(self, displacement: Array) -> Held:
         """Holds of the plate's ends: moved along it, (n_instants,), m, and level."""
         nodes = np.concatenate(self.plate.ends)
-        return Held("plate x", len(self.centres), nodes, 0, displacement)
+        return Held("plate along x", len(self.centres), nodes, 0, displacement)
 
 
 def _unit(direction: int) -> Array:
