@@ -139,7 +139,7 @@ def _at_held_ends(run: FinishedRun, name: str) -> tuple[Array, Array]:
     up to the clamp of a body (`solver.discrete.driven_friction`); springs between them
     are not strained. Shares of pressing force and of friction, (n_points,) both.
     """
-    law = run.problem.rubbing[name]
+    law = run.problem.contacts[name]
     lengths = law.by_point(law.weights)
     pressing = np.zeros_like(lengths)
     # The first and the last point are those beside the ends.
@@ -154,7 +154,7 @@ def _held_lengths(run: FinishedRun, name: str) -> dict[int, float]:
     """Lengths, m, of held ends without points, by the points beside them: 0 or -1."""
     structure = run.settings.structure()
     if isinstance(structure, Rope):
-        wire = structure.wires[run.problem.rubbing.number_of[name]]
+        wire = structure.wires[run.problem.contacts.number_of[name]]
         half = 0.5 * wire.length / structure.elements
         return {0: half, -1: half}
     if isinstance(structure, Rods) and structure.wires > 1:
