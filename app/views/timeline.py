@@ -27,7 +27,7 @@ HIGH = 2.7
 
 
 class Timeline(View):
-    """Load paths over time, each over its largest value, and the selected instant."""
+    """Load paths over time, relative to their largest values, and the instant."""
 
     name = "Load path"
 
@@ -103,7 +103,7 @@ class Timeline(View):
 
 
 def paths_of(run: Run) -> list[tuple[str, Array]]:
-    """Title with range, and values, (n_instants,), of all paths, constant ones last."""
+    """Title with range, and values, (n_instants,), of all paths; constant ones last."""
     description = run.geometry.description
     changing = []
     constant = []
