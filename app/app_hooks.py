@@ -1,4 +1,4 @@
-"""Start of the server by `panel serve app`: its settings, and a warm start."""
+"""Start of the server by `panel serve app`: settings, imports and worker processes."""
 
 import gc
 import sys

@@ -1,4 +1,4 @@
-"""Events of the browser: pictures painted, keys, window, address, values sent back."""
+"""Events of the browser: painted pictures, keys, window, address, echoed values."""
 
 from __future__ import annotations
 
@@ -186,7 +186,7 @@ final one. Of a key value and final value come together, and are one."""
 
 
 class Pulse(DataModel):
-    """Number of the newest picture, and of the last one that is on the screen.
+    """Model with the numbers of the newest picture and of the last painted one.
 
     `looks` counts how often the server looked in vain for the answer.
     """
@@ -197,7 +197,7 @@ class Pulse(DataModel):
 
 
 class Display:
-    """Display of the views in sight: a picture once the browser has painted the last.
+    """Display of the visible views: next picture when the browser has painted the last.
 
     `views` are those in sight. `also` is called with each picture, inside its hold, for
     parts that are not views, such as the status line. A view that is held when it comes
@@ -225,7 +225,7 @@ class Display:
         )
 
     def look_at(self, views: list[View], also: Iterable[str] = ()) -> None:
-        """Set the views in sight, and needs of frames beside theirs."""
+        """Set the visible views, and further needs of frames."""
         needs = chain.from_iterable(view.needs for view in views)
         self._state.needs = frozenset([*needs, *also])
         if views != self.views or any(view.is_held for view in views):
@@ -233,7 +233,7 @@ class Display:
             self._update()
 
     def catch_up(self) -> None:
-        """Ask again for the last picture, once its answer counts as lost.
+        """Ask again for the last picture, if its answer counts as lost.
 
         Until then any message will do. Panel keeps one that comes just as another has
         been written, until it writes the next one.
@@ -250,18 +250,18 @@ class Display:
                 self._count()
 
     def _is_waiting(self) -> bool:
-        """Check whether the browser still paints a picture, and it is not lost."""
+        """Check whether the browser still paints a picture that is not lost."""
         is_sent = self.pulse.painted < self.pulse.sent
         return is_sent and time.monotonic() < self._sent_at + LOST
 
     def _update(self) -> None:
-        """Paint the newest frame, now or once the last picture is on the screen."""
+        """Paint the newest frame, now or when the last picture is painted."""
         self._is_due = True
         if not self._is_waiting():
             self._paint()
 
     def _paint(self) -> None:
-        """Send the newest frame to all views in sight as one message."""
+        """Send the newest frame to all visible views as one message."""
         state = self._state
         frame = self._state.frame
         self._is_due = False
@@ -284,12 +284,12 @@ class Display:
             state.send(Ready())
 
     def _count(self) -> None:
-        """Count a picture, last of all: once it is painted its number comes back."""
+        """Number a picture after all its changes: the browser returns the number."""
         self._sent_at = time.monotonic()
         self.pulse.sent += 1
 
     def _on_painted(self) -> None:
-        """Go on after a pause in which other pages can paint.
+        """Continue after a pause for other pages.
 
         All pages share the server's thread.
         """
@@ -311,7 +311,7 @@ class Display:
 
 
 class Browser(DataModel):
-    """The window of the browser, and keys that are pressed in it.
+    """The window of the browser, and pressed keys.
 
     The window has a `height` in px and may be narrow. `acts` grows whenever a person
     presses a key or a button of the mouse. `pressed` is the last key that the page
@@ -349,7 +349,7 @@ class Browser(DataModel):
     def listen(
         self, state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]
     ) -> None:
-        """Call actions of keys by their names in the browser; note the window's size.
+        """Call the actions of pressed keys by name; store the window's size.
 
         Keys that an element takes for itself (`TAKEN`) call nothing.
         """
@@ -384,7 +384,7 @@ class Browser(DataModel):
 
 
 class AtOnce(pn.custom.JSComponent):
-    """Part without a look that has the values of a slider come at once.
+    """Invisible component that makes a slider send its values at once.
 
     Panel gathers values for 50 ms, but what comes before a message of a component is
     handed on before it.
@@ -394,7 +394,7 @@ class AtOnce(pn.custom.JSComponent):
 
 
 def fade_first(state: PageState, act: Callable[[], None]) -> None:
-    """Fade what is shown, and do in the next step what takes a while and replaces it.
+    """Fade the present content, and replace it in the next step of the event loop.
 
     Within one step the browser would hear of the fading at its end.
     """
@@ -403,7 +403,7 @@ def fade_first(state: PageState, act: Callable[[], None]) -> None:
 
 
 class Echoes:
-    """Values that the page gave a widget, to tell them from those of a person.
+    """Values that the page gave to widgets, to distinguish echoes from user input.
 
     Panel's React wrapper sends a value back after it has shown it. Where the page gave
     the next value meanwhile, that looks as if a person had chosen the one before
@@ -417,7 +417,7 @@ class Echoes:
         self._last: Any = None
 
     def show(self, widget: Any, value: Any, **more: Any) -> None:
-        """Have a widget show a value, and set more of its parameters."""
+        """Set a widget's value and other parameters, and expect the echo."""
         # In one message: the number must not be there before the value.
         with pn.io.hold():
             if value != widget.value:
@@ -433,12 +433,12 @@ class Echoes:
             widget.param.update(value=value, **more)
 
     def has(self, value: Any) -> bool:
-        """Check whether a value that the widget reports may be one given to it."""
+        """Check whether a reported value may be an echo of one that the page set."""
         self._forget()
         return any(given == value for _, given in self._given)
 
     def _forget(self) -> None:
-        """Forget the values that the browser has shown."""
+        """Drop the values that the browser has shown."""
         shown = self._state.shown
         self._given = [each for each in self._given if each[0] > shown]
 
@@ -449,7 +449,7 @@ def linked(
     present: Callable[[], Any],
     choose: Callable[[Any], object],
 ) -> Callable[[], None]:
-    """Link a widget to a value that it shows, and that a person chooses by it.
+    """Link a widget to a value, in both directions.
 
     The present value is None where the widget has no such choice. Returns the function
     that shows the present value.
@@ -475,7 +475,7 @@ def linked(
 
 
 def linked_to(state: PageState, name: str, widget: Any) -> Any:
-    """Link a widget to a value of the state, by its name, and return the widget."""
+    """Link a widget to a parameter of the state by name; return the widget."""
 
     def choose(value: Any) -> None:
         state.param.update(**{name: value})

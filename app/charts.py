@@ -1,4 +1,4 @@
-"""Charts by HoloViews: those of What if, of reports, and of pages of the commands."""
+"""Charts by HoloViews: of What if, of reports, and of pages of commands."""
 
 from __future__ import annotations
 
@@ -76,14 +76,14 @@ def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
 
 
 def library(*more: str) -> str:
-    """Scripts of Bokeh and further parts, for a page that loads nothing (HTML)."""
+    """Scripts of Bokeh and others as HTML, for a page that loads nothing."""
     # Not `Resources.render`: in it Panel has a page load scripts from the network.
     texts = Resources(mode="inline", components=["bokeh", *more]).js_raw
     return html("library.html", scripts=texts)
 
 
 def keys(charts: Sequence[Chart]) -> str:
-    """The legend that charts side by side share (HTML); "" without labels."""
+    """Common legend of charts side by side as HTML; "" without labels."""
     curves: dict[str, dict[str, str]] = {}
     for chart in charts:
         if isinstance(chart, Panel):
@@ -100,7 +100,7 @@ def _key(curve: PanelCurve) -> dict[str, str]:
 
 
 class LiveChart:
-    """A chart that is drawn anew as its runs end; `view` has it below its legend."""
+    """A chart that is updated as its runs end; `view` has legend and chart."""
 
     def __init__(self) -> None:
         self._keys = pn.pane.HTML("", margin=(4, 8))
@@ -111,7 +111,7 @@ class LiveChart:
         self._drawn: list[Any] = []
 
     def show(self, chart: Chart) -> None:
-        """Show a chart, in the last figure if axes and curves are the same."""
+        """Show a chart, in the same figure if axes and curves are unchanged."""
         axes = [chart.x, chart.y]
         if isinstance(chart, Map):
             axes.append(chart.scale)
@@ -132,7 +132,7 @@ class LiveChart:
 
 
 def in_units(chart: Chart) -> Chart:
-    """A chart in the units in which it is read; charts of the engine are in SI."""
+    """A chart in units for readers; charts of the engine are in SI."""
     if isinstance(chart, Map):
         return _map_in_units(chart)
     return _panel_in_units(chart)
@@ -175,7 +175,7 @@ def _divided(runs: Runs | None, x: float, y: float) -> Runs | None:
 
 
 def _in_unit(axis: PanelAxis, *values: Array) -> tuple[PanelAxis, float]:
-    """An axis in the unit of values in SI, (n,) each, and the size of that unit."""
+    """An axis in a unit for values in SI, (n,) each, and the size of the unit."""
     sizes = np.abs(np.concatenate([[0.0], *values]))
     unit = unit_for(float(sizes[np.isfinite(sizes)].max()), axis.unit)
     limits = None
@@ -236,7 +236,7 @@ def overlay(chart: Chart) -> hv.Overlay:
 
 
 def edges(values: Array, axis: PanelAxis) -> Array:
-    """Ends of cells about n ascending values, half way between them, shape (n + 1,).
+    """Edges of cells around n ascending values, halfway between, shape (n + 1,).
 
     On a logarithmic axis a cell ends half way between logarithms.
     """
@@ -253,7 +253,7 @@ def edges(values: Array, axis: PanelAxis) -> Array:
 
 
 def _ticks(axis: PanelAxis, values: Iterable[float]) -> list[Any] | None:
-    """Names of an axis, its few whole numbers, or those of a short logarithmic axis.
+    """Ticks of an axis: names, few whole numbers, or those of a short logarithmic axis.
 
     None for round numbers.
     """

@@ -1,4 +1,4 @@
-"""The dialog by which a class begins, or is joined, and the line on it on the page."""
+"""The dialog to begin or join a class, and the line about the class on the page."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ class ClassDialog:
             self._member.message = refusal
 
     def _enter(self, code: str) -> str:
-        """Open the page of a class; return a refusal where there is none."""
+        """Open the page of a class; return a refusal if there is no such class."""
         room = find(code)
         if room is None:
             return no_class(code)

@@ -1,4 +1,4 @@
-"""Classes: a page leads, and the others show its frames, which are computed once.
+"""Classes: one page leads, the others show its frames, which are computed once.
 
 Pages have no names, and nothing is left of a class that has ended. A class whose leader
 is gone waits some minutes: a page that is loaded again is gone for a moment.
@@ -62,14 +62,14 @@ class Classroom:
         return self._gone_at is not None and time.monotonic() - self._gone_at > KEPT
 
     def lead(self, member: ClassMember) -> None:
-        """Have a page lead the class, in place of the last leader."""
+        """Make a page the leader of the class."""
         self.leader = member
         self._gone_at = None
         self.state = member.state
         self.notify()
 
     def part(self, member: ClassMember) -> None:
-        """Wait for a leader whose page is closed, or let a follower go."""
+        """Remove a follower; or wait for a leader whose page is closed."""
         if member is self.leader:
             self._let_go(time.monotonic())
         elif member in self.members:
@@ -83,7 +83,7 @@ class Classroom:
         self.notify()
 
     def _let_go(self, now: float) -> None:
-        """Keep a copy of the parts of the leader's state that followers show.
+        """Copy the parts of the leader's state that followers show.
 
         The state itself would keep the whole page of the leader in memory.
         """
@@ -115,7 +115,7 @@ class Classroom:
         )
 
     def notify(self) -> None:
-        """Have all pages show the present state.
+        """Make all pages show the present state.
 
         Counts of another lesson are closed again.
         """
@@ -132,7 +132,7 @@ CLASSROOMS: dict[str, Classroom] = {}
 
 
 def begin_with_class(state: PageState) -> None:
-    """Begin a page with what the class shows that its address names.
+    """Begin a page with the state of the class in its address.
 
     Widgets are made with these values: what changes once they are on the screen would
     be written over what a person types there.
@@ -147,14 +147,14 @@ def _values(state: PageState, names: Sequence[str]) -> dict[str, Any]:
 
 
 def _update(state: PageState, values: Mapping[str, Any]) -> None:
-    """Set the values that have changed: watchers of others have nothing to do."""
+    """Set only the values that have changed, so that few watchers are called."""
     present = _values(state, [*values])
     changed = {name: value for name, value in values.items() if value != present[name]}
     state.param.update(**changed)
 
 
 def forget() -> None:
-    """Forget the classes that are over, and what their leaders left."""
+    """Remove the classes that are over, with their leaders' data."""
     for code in [code for code, room in CLASSROOMS.items() if room.is_over]:
         del CLASSROOMS[code]
 
@@ -205,7 +205,7 @@ class ClassMember(param.Parameterized):
         return self.room is not None and self in self.room.members
 
     def enter(self, address: str) -> bool:
-        """Follow the class of an address, or lead it on with its key.
+        """Follow the class of an address, or lead it with its key.
 
         Return whether the page follows a class. Where there is no such class, `message`
         says so, and all stays as it is.
@@ -228,7 +228,7 @@ class ClassMember(param.Parameterized):
         return room is not None and self.follows
 
     def begin(self) -> None:
-        """Begin a class with this page as its leader; forget classes that are over."""
+        """Begin a class with this page as leader; remove classes that are over."""
         if self.room is not None:
             return
         forget()
@@ -271,7 +271,7 @@ class ClassMember(param.Parameterized):
         self.room.notify()
 
     def close(self) -> None:
-        """Part from the class, as the page is closed."""
+        """Leave the class when the page is closed."""
         if self.room is not None:
             self.room.part(self)
             self.room = None
@@ -308,7 +308,7 @@ class ClassMember(param.Parameterized):
         self._take()
 
     def _send(self, order: Order) -> None:
-        """Go on alone once a run is ordered; pictures need no answer."""
+        """Leave the class on any order but those of pictures and needs."""
         if not isinstance(order, Ready | Needs):
             self.leave()
 
@@ -344,7 +344,7 @@ class ClassMember(param.Parameterized):
         return f"You follow class {room.code}. Change anything to go on by yourself."
 
     def _address(self) -> str:
-        """Part of the address: the code of the class, and for its leader the key."""
+        """Part of the address: code of the class, and the key for its leader."""
         if self.room is None:
             return ""
         if self.leads:
@@ -352,6 +352,6 @@ class ClassMember(param.Parameterized):
         return self.room.code
 
     def _on_address(self, address: str) -> None:
-        """Leave a class, as the browser goes back."""
+        """Leave a class when the browser goes back."""
         if self.follows and not address:
             self.leave()

@@ -1,4 +1,4 @@
-"""The controls at the side: a Panel widget for each setting, by its definition."""
+"""The controls at the side: a Panel widget for each setting, from its definition."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class SettingControl:
             self._is_updating = False
 
     def _make(self) -> tuple[Any, list[Any]]:
-        """The field of the setting, and the parts that stand on the page."""
+        """Make the field of the setting, and the widgets of the page."""
         definition = self._definition
         more: dict[str, Any] = {
             "description": help_of(definition),
@@ -130,7 +130,7 @@ class SettingControl:
     def _make_text(
         self, definition: TextParameter, more: dict[str, Any]
     ) -> tuple[Any, list[Any]]:
-        """Field of a text: its presets and a file that is open, or text to type in."""
+        """Make the field of a text: presets and an open file, or text input."""
         if not definition.is_file:
             field = pmui.TextInput(variant="standard", **more)
             return field, [field]
@@ -171,7 +171,7 @@ class SettingControl:
         return float(f"{value / self._unit.factor:.10g}")
 
     def _from_slider(self, position: float) -> float:
-        """Value at a position of the slider, rounded to what a hand can choose."""
+        """Value at a position of the slider, rounded to its resolution."""
         if self._is_logarithmic:
             value = 10.0**position
             digits = 3
@@ -207,14 +207,14 @@ class SettingControl:
                 self._show_on_slider(value)
 
     def _offer_points(self, *, has_points: bool) -> None:
-        """Show the button that opens the points of a path, if it has any."""
+        """Show the button for the points of a path, if the path has points."""
         if has_points:
             self._add_edit_button()
         if self._edit_button is not None:
             self._edit_button.visible = has_points
 
     def _add_edit_button(self) -> None:
-        """Have the button that opens the points of a path, which few paths need."""
+        """Add the button for the points of a path."""
         if self._edit_button is None:
             self._edit_button = button(
                 "Edit points",
@@ -242,7 +242,7 @@ class SettingControl:
             self._positions.show(slider, position, value_throttled=position)
 
     def _explain(self, refusal: str) -> None:
-        """Write below the field why a value is refused, or the help of a preset."""
+        """Show below the field why a value is refused, or the help of a preset."""
         value = getattr(self._state.settings, self.name)
         text = refusal
         if not refusal and isinstance(value, str):
@@ -285,13 +285,13 @@ class SettingControl:
             self._refuse(self._state.refusal)
 
     def _refuse(self, refusal: str) -> None:
-        """Show the present value again, and why another value was refused."""
+        """Show the present value again, and the reason of the refusal."""
         self._state.refusal = refusal
         self.update()
         self._explain(refusal)
 
     def _move(self, *events: Any) -> None:
-        """Run the value of the slider while it is dragged, and once it is released.
+        """Run the value of the slider while it is dragged, and when it is released.
 
         A key releases at once; a refused value leaves the one before.
         """
@@ -325,7 +325,7 @@ class SettingControl:
 
 
 class Controls:
-    """All controls of the present scene: the chief ones, and groups that open.
+    """All controls of the present scene: main ones, and groups that open.
 
     Controls that are not in sight follow the state once they are opened: each widget
     costs a browser time.
@@ -377,7 +377,7 @@ class Controls:
         fade_first(self._state, partial(self._state.choose_scene, scene))
 
     def open(self, is_open: bool) -> None:
-        """Have the controls follow the state from now on, or no longer."""
+        """Start or stop following the state."""
         self._is_open = is_open
         self.update()
 
@@ -420,7 +420,7 @@ class Controls:
             self._groups.active = [len(groups)]
 
     def _open(self) -> None:
-        """Fill the groups that are opened for the first time."""
+        """Build groups that are opened for the first time."""
         for number in self._closed.keys() & set(self._groups.active):
             title, names = self._closed.pop(number)
             if names:
@@ -435,7 +435,7 @@ class Controls:
 
 
 def views_of(controls: Iterable[SettingControl]) -> list[Any]:
-    """Parts of controls that stand on the page, in their order."""
+    """Widgets of controls on the page, in order."""
     views = []
     for control in controls:
         views += control.views
@@ -443,7 +443,7 @@ def views_of(controls: Iterable[SettingControl]) -> list[Any]:
 
 
 def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:
-    """The chief settings of a scene, and all others with several values, by group."""
+    """The main settings of a scene, and other variable ones by group."""
     definitions = kind.definitions()
     chief = [name for name in (*kind.CHIEF, *kind.ALSO_CHIEF) if name in definitions]
     groups: dict[str, list[str]] = {group: [] for group in GROUPS}

@@ -1,4 +1,4 @@
-"""Data of a run on the page: `Run` is common to its iterates, a `Frame` is one iterate.
+"""Data of a run on the page: `Run` is common to iterates, a `Frame` is one iterate.
 
 All arrays are in SI, float32, space first and time last, thinned to what a screen
 shows.
@@ -30,7 +30,7 @@ LINEAR = "linear"
 
 @dataclass(frozen=True, eq=False)
 class FrictionInterface:
-    """Data of an interface that all iterates share."""
+    """Data of an interface that are common to all iterates."""
 
     positions: Floats
     """Positions of its points along the bodies, shape (n_points,), m."""
@@ -65,7 +65,7 @@ class InterfaceFields:
 
 @dataclass(frozen=True, eq=False)
 class Geometry:
-    """The undeformed bodies as they are drawn."""
+    """The undeformed bodies for drawing."""
 
     description: Description
     """Bodies, what holds them and what acts on them."""
@@ -101,7 +101,7 @@ class DeformedGeometry:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Data that all frames of a run share."""
+    """Data that are common to all frames of a run."""
 
     number: int
     """Number of the run, from 1: no other run of the server has it."""
@@ -136,7 +136,7 @@ class Run:
 
     @property
     def structure(self) -> tuple[object, ...]:
-        """Scene, size and supports: only runs with equal ones are compared."""
+        """Key of scene, size and supports: runs with equal keys can be compared."""
         drawn = self.geometry.description
         held = {(hold.kind, hold.side) for hold in drawn.holds}
         # An end that is moved is held, too.
@@ -148,7 +148,7 @@ class Run:
 
     @property
     def surfaces(self) -> list[str]:
-        """Names of the interfaces at which bodies touch, without springs."""
+        """Names of the interfaces between bodies, without springs."""
         return [name for name, each in self.interfaces.items() if not each.is_spring]
 
     def x_title(self, name: str) -> str:
@@ -178,7 +178,7 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """An iterate of a run, as views show it."""
+    """An iterate of a run, for views."""
 
     run: Run
     iteration: int
@@ -224,14 +224,14 @@ class Frame:
 
     @property
     def stage(self) -> tuple[int, bool, bool]:
-        """Number of the run, and whether it is compared and over.
+        """Key of the run's stage: number, is compared with a reference, is over.
 
         Axes are chosen anew when it changes.
         """
         return self.run.number, bool(self.run.reference), self.status is not None
 
     def last(self, name: str) -> float:
-        """The newest value of one of the history's scalars; NaN where there is none."""
+        """The newest value of a scalar of the history; NaN without any."""
         values = self.history[name]
         if len(values):
             return float(values[-1])
@@ -239,7 +239,7 @@ class Frame:
 
     @property
     def error(self) -> float:
-        """Relative error of the contact force; without a reference it is estimated."""
+        """Relative error of the contact force; estimated without a reference."""
         measured = self.last("error_force")
         if np.isfinite(measured):
             return measured
@@ -247,7 +247,7 @@ class Frame:
 
 
 def _size(extra: Any) -> int:
-    """Memory of an extra and its parts that say theirs, bytes."""
+    """Memory of an extra and its parts with `nbytes`, B."""
     if isinstance(extra, Mapping):
         return sum(_size(part) for part in extra.values())
     if isinstance(extra, list | tuple):
@@ -257,7 +257,7 @@ def _size(extra: Any) -> int:
 
 @dataclass(frozen=True)
 class Selection:
-    """The selection: instant, interface, substructure and position that views show."""
+    """The selected instant, interface, substructure and position."""
 
     phase: float = 0.75
     """The instant, as a share of the interval."""

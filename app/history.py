@@ -1,4 +1,4 @@
-"""Frames of a run that were shown, in the page's memory."""
+"""History of the shown frames of a run, in the memory of the page."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ dropped."""
 
 
 class History:
-    """Frames of a run that were shown, by iteration, thinned under a memory limit.
+    """Shown frames of a run by iteration, thinned to a memory limit.
 
     The frame of an iteration that is missing comes from the worker (`Show`).
     """
@@ -22,13 +22,13 @@ class History:
 
     @property
     def newest(self) -> Frame | None:
-        """The last frame; of a run that has ended, its answer."""
+        """The last frame: at the end of a run the answer."""
         if self._frames:
             return self._frames[-1]
         return None
 
     def add(self, frame: Frame) -> None:
-        """Keep a frame in its order, in place of one of the same iterate."""
+        """Insert a frame in order, replacing one of the same iterate."""
         order = [_order(kept) for kept in self._frames]
         index = bisect_left(order, _order(frame))
         if index < len(order) and order[index] == _order(frame):
@@ -41,11 +41,11 @@ class History:
             self._frames = [*self._frames[:-1:2], self._frames[-1]]
 
     def at(self, iteration: int) -> Frame:
-        """The last kept frame of the search up to an iteration, or the first frame."""
+        """The last stored frame of the search up to an iteration, or the first."""
         return self._frames[max(bisect_right(self._search(), iteration) - 1, 0)]
 
     def _search(self) -> list[int]:
-        """Numbers of the kept iterates but for the answer, ascending."""
+        """Numbers of the stored iterates without the answer, ascending."""
         return [kept.iteration for kept in self._frames if not kept.is_answer]
 
     def _nbytes(self) -> int:
@@ -53,5 +53,5 @@ class History:
 
 
 def _order(frame: Frame) -> tuple[int, bool]:
-    """Place of a frame in its run: the answer follows the last iterate."""
+    """Sort key of a frame in its run: the answer follows the last iterate."""
     return frame.iteration, frame.is_answer

@@ -1,4 +1,4 @@
-"""The address of a page: read to show a state, written of the state that is shown."""
+"""The address of a page: read to show a state, and written from the shown state."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ _CHECKED: dict[str, Any] = {
 
 
 class Link:
-    """The address of a page, kept up to date; an earlier one is shown again.
+    """The address of a page, kept up to date; going back shows an earlier state.
 
     Each change is an entry of the browser's history, so that Back undoes it. Only moves
     of a dragged slider, instants and iterations are no entries. `query` is the address
@@ -82,7 +82,7 @@ class Link:
         )
 
     def _write(self) -> None:
-        """Write the state that is shown into the address."""
+        """Write the shown state into the address."""
         query = query_of(shown_by(self._state))
         if self._state.is_dragged or query == self.query:
             return
@@ -96,7 +96,7 @@ class Link:
                 self._location.search = query
 
     def copy(self) -> str:
-        """Have the browser copy the whole link, and return a message on it."""
+        """Copy the whole link in the browser, and return a message."""
         link, message = link_of(self._state)
         # The same link may be copied again.
         self._browser.tell(copied="")
@@ -108,7 +108,7 @@ class Link:
         self._visit(query_of({"room": code}))
 
     def _visit(self, query: str) -> None:
-        """Have the browser open the page of an address."""
+        """Open an address in the browser."""
         self._browser.tell(destination="")
         self._browser.tell(destination=query)
 
@@ -125,7 +125,7 @@ class Link:
 
 
 def show(state: PageState, shown: Shown) -> None:
-    """Show the state that was read from an address."""
+    """Show a state that was read from an address."""
     values = {name: shown.get(name, DEFAULTS[name]) for name in SHARED}
     # In one step: each change alone would write an address of its own.
     with param.parameterized.batch_call_watchers(state):
@@ -141,12 +141,12 @@ def show(state: PageState, shown: Shown) -> None:
 
 
 def shown_by(state: PageState) -> Shown:
-    """The state that a page shows, without instant, interface and iteration."""
+    """The shown state of a page, without instant, interface and iteration."""
     return {name: getattr(state, name) for name in ("settings", *SHARED)}
 
 
 def link_of(state: PageState) -> tuple[str, str]:
-    """The whole link, with all that is selected, and a message on values left out."""
+    """The whole link, including selections, and a message on omitted values."""
     frame = state.frame
     is_held = not state.running or state.frame is not state.newest
     is_waiting = frame is not None and not frame.is_answer and is_held
@@ -171,7 +171,7 @@ def link_of(state: PageState) -> tuple[str, str]:
 
 
 def query_of(shown: Shown) -> str:
-    """The address: differences from the defaults, or from a lesson or a case."""
+    """Query of an address: differences from defaults, or from a lesson or case."""
     if shown.get("room"):
         return f"?class={quote(shown['room'])}"
     settings = shown["settings"]
@@ -194,7 +194,7 @@ def query_of(shown: Shown) -> str:
 
 
 def _beside_settings(shown: Shown) -> dict[str, str]:
-    """Parts of an address beside settings, where they differ from a new page's."""
+    """Parts of an address besides settings, where they differ from a new page's."""
     selection = Selection()
     lesson = LESSONS.get(shown.get("lesson", ""))
     if lesson:
@@ -221,7 +221,7 @@ def _beside_settings(shown: Shown) -> dict[str, str]:
 
 
 def read(query: str, present: Settings | None = None) -> tuple[Shown, str]:
-    """State of an address from the question mark on, and a sentence on refused parts.
+    """State in the query of an address, and a sentence on refused parts.
 
     The page's `present` settings have the values that are too long for an address. The
     sentence is "" where nothing is refused.
@@ -256,7 +256,7 @@ def read(query: str, present: Settings | None = None) -> tuple[Shown, str]:
 
 
 def _question(text: str, settings: Settings, refused: list[str]) -> str:
-    """Question of the tab What if in an address; refuse one that settings lack."""
+    """Question of the tab What if in an address; refuse one without such settings."""
     question = " ".join(text.split())
     if question and str(question_of(question, settings)) != question:
         refused.append(
@@ -268,7 +268,7 @@ def _question(text: str, settings: Settings, refused: list[str]) -> str:
 
 
 def _plots(pairs: dict[str, str], case: str, refused: list[str]) -> list[str]:
-    """Names of known plots in an address, else those of its case; refuse others."""
+    """Names of plots in an address, else those of its case; refuse unknown names."""
     names = plots_of(case)
     if "plots" in pairs:
         names = [name.strip() for name in pairs.pop("plots").split(",")]
@@ -282,7 +282,7 @@ def _plots(pairs: dict[str, str], case: str, refused: list[str]) -> list[str]:
 
 
 def _checked(pairs: dict[str, str], refused: list[str]) -> Shown:
-    """Parts of an address beside settings that are allowed; refuse the others."""
+    """Allowed parts of an address besides settings; refuse the others."""
     allowed = {}
     for name, definition in _CHECKED.items():
         if name not in pairs:
@@ -301,7 +301,7 @@ def _checked(pairs: dict[str, str], refused: list[str]) -> Shown:
 def _with_file(
     base: Settings, pairs: dict[str, str], present: Settings | None, refused: list[str]
 ) -> Settings:
-    """Settings with the present values of those that are too long for an address."""
+    """Settings, with present values of those that are too long for an address."""
     for name in pairs.pop("file", "").split(","):
         is_there = present is not None and present.scene == base.scene
         if is_there and name in base.definitions():
@@ -312,7 +312,7 @@ def _with_file(
 
 
 def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str, str]]:
-    """Settings from which an address differs, and the lesson or case of them."""
+    """Base settings of an address, and their lesson or case."""
     scene = pairs.pop("scene", "")
     names = {kind: pairs.pop(kind, "") for kind in KNOWN}
     for kind, name in names.items():
@@ -341,7 +341,7 @@ def _proposal(kind: str, name: str) -> str:
 
 
 def _together(base: Settings, values: dict[str, Any], refused: list[str]) -> Settings:
-    """Settings with the values that hold together; refuse the others one by one."""
+    """Settings with the consistent values; refuse the others one by one."""
     # A refusal may be of a setting that the address does not name, and that does not go
     # with one that it names: then its last value goes first.
     while True:

@@ -15,7 +15,7 @@ WHOLE = -1.0
 
 @dataclass(frozen=True)
 class Start:
-    """Start a run at a pace, in iterations a second: 0 waits, infinity has no pause.
+    """Order to start a run at a pace, iterations per second: 0 waits, inf is free.
 
     A run that waits does its `steps` first, at least one. A run that follows a dragged
     slider hurries to its end before it is shown; a run that is agreed to may take long
@@ -32,19 +32,19 @@ class Start:
 
 @dataclass(frozen=True)
 class Pace:
-    """Go on at another pace."""
+    """Order another pace."""
 
     pace: float
 
 
 @dataclass(frozen=True)
 class Step:
-    """Do one iteration and wait."""
+    """Order one iteration, then to wait."""
 
 
 @dataclass(frozen=True)
 class Show:
-    """Send the frame of an earlier iteration of the run, if its iterate is kept."""
+    """Order the frame of an earlier iteration, if its iterate is stored."""
 
     iteration: int
 
@@ -55,7 +55,7 @@ TABLE = "table"
 
 @dataclass(frozen=True)
 class Needs:
-    """Extras and quantities that frames shall carry, and the selection."""
+    """Order of extras and quantities for frames, and the selection."""
 
     extras: frozenset[str] = frozenset()
     interface: str = ""
@@ -67,7 +67,7 @@ class Needs:
 
 @dataclass(frozen=True)
 class Ready:
-    """Order to send the newest frame, as the last picture is on the screen."""
+    """Order the newest frame, as the last picture is painted."""
 
 
 Order = Start | Pace | Step | Show | Needs | Ready
@@ -75,7 +75,7 @@ Order = Start | Pace | Step | Show | Needs | Ready
 
 @dataclass(frozen=True)
 class Began:
-    """Report that a run was taken up."""
+    """Report that a run has begun."""
 
     number: int
 
@@ -89,14 +89,14 @@ class NewFrame:
 
 @dataclass(frozen=True)
 class Earlier:
-    """Report of an earlier iterate of the run, which was asked for."""
+    """Report of a requested earlier iterate of the run."""
 
     frame: Frame
 
 
 @dataclass(frozen=True)
 class Costly:
-    """Report that a run was not begun, as it takes long or much memory."""
+    """Report that a run was not begun, as it needs much time or memory."""
 
     number: int
     text: str
@@ -104,7 +104,7 @@ class Costly:
 
 @dataclass(frozen=True)
 class Failed:
-    """Report that a run broke."""
+    """Report that a run ended by an error."""
 
     number: int
     text: str
@@ -112,7 +112,7 @@ class Failed:
 
 @dataclass(frozen=True)
 class Alive:
-    """A sign of life."""
+    """Report that the worker is alive."""
 
 
 Report = Began | NewFrame | Earlier | Costly | Failed | Alive

@@ -129,7 +129,7 @@ class Page:
         self._guide.show()
 
     def _make_dialogs(self) -> None:
-        """Make the page's own dialogs; all are put on it when they are first opened."""
+        """Make the dialogs of the page; each is put on the page when first opened."""
         self._dialogs = pmui.Column(margin=0, height=0)
         self._away = dialog("Take away")
         self._words = dialog(
@@ -146,7 +146,7 @@ class Page:
         self._away.param.watch(lambda event: self._live.offer(event.new), "open")
 
     def _framed(self) -> pmui.Page:
-        """The template, with header, controls and main area."""
+        """Make the template with header, controls and main area."""
         return pmui.Page(
             title="Slipfront",
             sidebar_width=320,
@@ -161,7 +161,7 @@ class Page:
         )
 
     def _fill(self) -> None:
-        """Put the parts on the page, while the browser loads its programs.
+        """Put the parts on the page, while the browser loads scripts.
 
         Each stands in a component of its own: Bokeh lays out all that a component holds
         whenever one widget in it is mounted, or changes its size.
@@ -177,7 +177,7 @@ class Page:
         self._live.prepare(kinds_beside(self.state))
 
     def _follow_state(self) -> None:
-        """Have the page follow the state, and the line of the class."""
+        """Watch the state, and show the line of the class."""
         self._class.view.param.watch(lambda event: self._place(), "visible")
         acts = [*TOUCHED, "plots", "view"]
         watch = self.state.param.watch
@@ -197,7 +197,7 @@ class Page:
         )
 
     def loaded(self) -> None:
-        """Show the figures once a browser is there, and go on or follow a class."""
+        """Show the figures when the browser is connected, and run or follow a class."""
         self._supervisor.open()
         self._live.open(kinds_beside(self.state))
         PAGES.opening.discard(self.state)
@@ -208,7 +208,7 @@ class Page:
             self.state.run()
 
     def _go_on(self, name: str, old: int, new: int) -> None:
-        """Go on once the first picture is painted: a search is seen from its beginning.
+        """Run when the first picture is painted: the search is seen from its start.
 
         While the browser still mounts widgets, some of them would not show changes.
         """
@@ -217,7 +217,7 @@ class Page:
             self.state.param.trigger("pace")
 
     def end(self, _context: Any) -> None:
-        """Leave the class, and end the worker of a page that was closed."""
+        """Leave the class, and end the worker, after the page was closed."""
         self._member.close()
         self._supervisor.end()
         PAGES.opening.discard(self.state)
@@ -273,7 +273,7 @@ class Page:
         )
 
     def _present(self) -> None:
-        """Turn between the view for a projector and that of the page."""
+        """Switch between the view for a projector and the normal one."""
         self.state.view = "present" if self.state.view == "page" else "page"
 
     def _on_height(self) -> None:
@@ -281,7 +281,7 @@ class Page:
         self._live.arrange(kinds_beside(self.state))
 
     def _read(self) -> None:
-        """Have the text beside the plots as large as they are."""
+        """Set the type size of the text next to the plots to that of the plots."""
         styles = {}
         if self.state.view == "present":
             zoom = f"{large_type(self.state) / READ:.2f}"
@@ -294,12 +294,12 @@ class Page:
         self._guide.magnify(type_size(self.state))
 
     def _put(self, event: Any) -> None:
-        """Put a dialog on the page when it is first opened."""
+        """Put a dialog on the page when the dialog is first opened."""
         if event.obj not in self._dialogs:
             self._dialogs.append(event.obj)
 
     def _take_away(self) -> None:
-        """Offer a link to the page, and files of what is seen."""
+        """Open the dialog with the link to the page and files to save."""
         copied = PlainText(margin=(0, 8))
 
         def copy() -> None:
@@ -317,7 +317,7 @@ class Page:
         self._words.open = True
 
     def _turn(self, tab: str) -> None:
-        """Show a tab, which is built when it is first opened."""
+        """Show a tab; build the tab when it is first opened."""
         if tab not in self._tabs:
             kind = {WHAT_IF: WhatIf, "Fit": FitTab, "Reports": Reports}[tab]
             self._tabs[tab] = kind(self.state).view
@@ -325,7 +325,7 @@ class Page:
         self._live.look()
 
     def _place(self) -> None:
-        """Put visible parts alone on the page.
+        """Put only visible parts on the page.
 
         Beside hidden parts the browser does not paint figures.
         """
@@ -356,7 +356,7 @@ class Page:
 
     @property
     def _has_controls(self) -> bool:
-        """Check whether controls stand at the side, where they lie over nothing."""
+        """Check whether controls are at the side, and cover nothing."""
         is_alone = self.state.view == "page" and not self._guide.is_open
         return is_alone and not self.state.is_narrow
 
@@ -369,7 +369,7 @@ class Page:
 
 
 def follow_itself(template: pmui.Page) -> None:
-    """Have a page follow whether it is loading itself, not whether the server is busy.
+    """Show a page as loading while it loads, not while the server is busy.
 
     Each event of a page would be told to all others, and what watches the server as a
     whole keeps the page in memory once it is closed. A value in place of the reference
@@ -380,7 +380,7 @@ def follow_itself(template: pmui.Page) -> None:
 
 
 def open_page() -> pmui.Page:
-    """The page of one session; its run starts when the browser is there."""
+    """Make the page of one session; its run starts when the browser is connected."""
     # Without notifications: each page's would stay in Panel's table of views for good.
     pn.extension(
         "katex",

@@ -1,4 +1,4 @@
-"""Refusals in the words of the page: titles for names, values in units of fields."""
+"""Refusals in terms of the page: titles of controls, values in their units."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ NUMBER = r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.])"
 def message_of(
     refusal: RefusedError, settings: Settings, name: str = "", value: Any = None
 ) -> str:
-    """A sentence on a refusal: the setting, the value, the reason, the allowed values.
+    """A sentence on a refusal: setting, value, reason, allowed values.
 
     Where the setting `name` was to change to `value`, the refusal may be of another
     setting.
@@ -58,7 +58,7 @@ def message_of(
 
 
 def _units(settings: Settings, name: str) -> tuple[str, Unit]:
-    """The SI unit of a setting's values, and the one in which the page has them."""
+    """The SI unit of a setting's values, and the unit on the page."""
     definition = settings.definitions()[name]
     if isinstance(definition, CurveParameter):
         units = settings.curve_units(name)
@@ -67,7 +67,7 @@ def _units(settings: Settings, name: str) -> tuple[str, Unit]:
 
 
 def _in_unit(text: str, si: str, unit: Unit) -> str:
-    """A text with its amounts of an SI unit in another unit."""
+    """A text with amounts in an SI unit converted to another unit."""
     amounts = rf"{NUMBER} {re.escape(si)}(?![\w/^·])"
     if si:
         return re.sub(amounts, lambda match: unit(float(match[1]), EXACT), text)
@@ -75,7 +75,7 @@ def _in_unit(text: str, si: str, unit: Unit) -> str:
 
 
 def amounts_in_titles(settings: Settings, text: str) -> str:
-    """A text with amounts of settings, as traction = 2e5 Pa, in the units of fields.
+    """A text with amounts of settings, as traction = 2e5 Pa, in units of their fields.
 
     Of choices, as finish=at-once, it has the title, too.
     """

@@ -1,4 +1,4 @@
-"""The server of pages: their number and address, compressed answers, and the log."""
+"""The server of pages: number and address of pages, compression, and log."""
 
 from __future__ import annotations
 
@@ -74,24 +74,24 @@ QUIET = 60.0
 
 
 class Pages:
-    """A count of the pages that are open, and states of those that are still made."""
+    """A count of the open pages, and states of pages in the making."""
 
     def __init__(self) -> None:
         self.count = 0
         self.opening: WeakSet[object] = WeakSet()
 
     def enter(self) -> bool:
-        """Count a page, if there is room for it."""
+        """Count a page, if another one is allowed; return whether it is."""
         has_room = self.count < most_pages()
         self.count += has_room
         return has_room
 
     def leave(self) -> None:
-        """Count a page no more."""
+        """Remove a page from the count."""
         self.count -= 1
 
     def pause(self, seconds: float) -> float:
-        """Time that a page leaves the others after a piece of work that took some, s.
+        """Pause of a page for the others after a piece of work, s.
 
         Each of them may need as long, and more while it is made.
         """
@@ -124,7 +124,7 @@ def address_for_others() -> str:
 
 
 def port() -> int:
-    """Port of the server that this page comes from."""
+    """Port of the server of this page."""
     return _address().port or 80
 
 
@@ -137,7 +137,7 @@ def _address() -> SplitResult:
 
 
 def configure() -> None:
-    """Have Tornado, on which Panel serves, use this kind of server."""
+    """Make Tornado, on which Panel serves, use this kind of server."""
     HTTPServer.configure(PageServer)
     ours = {DocHandler: PageHandler, WSHandler: PageSocket}
     per_app_patterns[:0] = [
@@ -153,7 +153,7 @@ def configure() -> None:
 
 
 def lighten() -> None:
-    """Have Bokeh leave out checks of the program; tests without a server have them.
+    """Switch off Bokeh's checks of the program, which tests without a server have.
 
     The signatures of a page's thousand callbacks would take a tenth of the time in
     which it is made.
@@ -166,7 +166,7 @@ def lighten() -> None:
 
 
 def share_looks() -> None:
-    """Have components of a kind share the definitions of their looks.
+    """Make components of a kind share the definitions of their looks.
 
     Param copies a definition for each component that asks for it, as it may be changed
     or referred to there: a page has 2300 copies. Nothing does so with these.
@@ -202,26 +202,26 @@ class PageHandler(DocHandler):
     _turn = asyncio.Lock()
 
     async def prepare(self) -> None:
-        """Wait for those who came before, and then until others are answered."""
+        """Wait for earlier requests, and until other pages are answered."""
         await super().prepare()
         async with self._turn:
             await asyncio.sleep(PAUSE)
 
 
 class PageSocket(WSHandler):
-    """Socket of a page, by which what is written is sent at once.
+    """Socket of a page that sends messages without delay.
 
     Bokeh writes a message in parts. Each would wait until the browser has acknowledged
     the part before, which browsers put off by some 40 ms.
     """
 
     def open(self, *args: Any, **kwargs: Any) -> Any:
-        """Begin to take messages."""
+        """Begin to receive messages."""
         self.set_nodelay(True)
         return super().open(*args, **kwargs)
 
     def ping(self, data: str | bytes = b"") -> None:
-        """Ask the browser for a sign of life; one that closes answers no more.
+        """Ping the browser, unless the socket is closing.
 
         `on_close` is about to let go of it. Bokeh would do so at once, and then once
         more, which is an error.
@@ -231,18 +231,18 @@ class PageSocket(WSHandler):
 
 
 class Compressed(GZipContentEncoding):
-    """Compression that takes little time: all pages wait for it."""
+    """Compression at a fast level, as all pages wait for it."""
 
     GZIP_LEVEL = 1
 
 
 class Guarded(OutputTransform):
-    """Policy on contents in the head of every answer (`POLICY`)."""
+    """Content security policy in the headers of every answer (`POLICY`)."""
 
     def transform_first_chunk(
         self, status_code: int, headers: HTTPHeaders, chunk: bytes, finishing: bool
     ) -> tuple[int, HTTPHeaders, bytes]:
-        """Add the policy to the head of an answer."""
+        """Add the policy to the headers of an answer."""
         headers["Content-Security-Policy"] = POLICY
         return status_code, headers, chunk
 
@@ -251,7 +251,7 @@ class Refused(Matcher):
     """Rule for addresses that are too long (414), and paths that no file has (404)."""
 
     def match(self, request: HTTPServerRequest) -> dict[str, Any] | None:
-        """Status with which an address is refused; None if it is not."""
+        """Status of a refused address; None if it is allowed."""
         if len(request.uri or "") > LONGEST:
             return {"target_kwargs": {"status_code": 414}}
         if "%00" in request.path:
@@ -260,14 +260,14 @@ class Refused(Matcher):
 
 
 def is_of_an_open_page(record: logging.LogRecord) -> bool:
-    """Check that a record of the log is not of a message to a closed page."""
+    """Check whether a record of the log is not about a message to a closed page."""
     return not (
         record.exc_info and isinstance(record.exc_info[1], WebSocketClosedError)
     )
 
 
 class OneLine(logging.Filter):
-    """Filter of a log: errors in one line, without their traceback, and seldom."""
+    """Filter of a log: errors in one line without traceback, at a limited rate."""
 
     _last = -QUIET
 

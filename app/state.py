@@ -1,4 +1,4 @@
-"""The state of a page: settings, frames, selection, and orders to its worker."""
+"""The state of a page: settings, frames, selection, and orders to the worker."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ VIEWS = ["page", "present"]
 
 @dataclass(frozen=True)
 class Poll:
-    """Predictions of a class as a page sees them: numbers without names.
+    """Predictions of a class, anonymously, for a page.
 
     `counts` of each choice are empty until the leader opens them.
     """
@@ -61,7 +61,7 @@ def default_settings(scene: str) -> Settings:
 
 
 class PageState(param.Parameterized):
-    """The state of a page, set by widgets, watched by views.
+    """The state of a page: set by widgets, watched by views.
 
     `send` passes orders on.
     """
@@ -171,7 +171,7 @@ class PageState(param.Parameterized):
         return True
 
     def drag(self, name: str, value: float) -> None:
-        """Run the value of a dragged slider if it is allowed.
+        """Run the value of a dragged slider, if the value is allowed.
 
         Only the answer is shown.
         """
@@ -194,25 +194,25 @@ class PageState(param.Parameterized):
             self.run()
 
     def adopt(self, settings: Settings) -> None:
-        """Take settings over and run them."""
+        """Replace the settings and run them."""
         # They are found again when the scene is chosen again.
         self._left[self.settings.scene] = self.settings
         self.param.update(settings=settings, refusal="", running=True)
         self.run()
 
     def choose_scene(self, scene: str) -> None:
-        """Go to another scene with the settings it was left with."""
+        """Change to another scene, with the last settings of that scene."""
         if scene != self.settings.scene:
             self.adopt(self._left.get(scene) or default_settings(scene))
 
     def run(self, *, is_agreed: bool = False) -> None:
-        """Run the settings from the start, at the pace."""
+        """Run the settings from the start at the present pace."""
         self.running = True
         self._start(self.settings, is_agreed=is_agreed)
 
     @property
     def is_over(self) -> bool:
-        """Check whether the run that was ordered last has ended."""
+        """Check whether the last ordered run has ended."""
         newest = self.newest
         if newest is None or newest.run.number != self.number:
             return False
@@ -220,7 +220,7 @@ class PageState(param.Parameterized):
 
     @property
     def is_fleeting(self) -> bool:
-        """Check whether the frame lacks a reference only until the next frame comes.
+        """Check whether the reference of the frame comes with the next frame.
 
         The last run of the scene had a reference: entries of legends that vanish and
         come back at once would flicker.
@@ -230,7 +230,7 @@ class PageState(param.Parameterized):
 
     @property
     def is_asked(self) -> bool:
-        """Check whether a lesson's question is open.
+        """Check whether a lesson's question is unanswered.
 
         In a class it is open until the leader goes on.
         """
@@ -241,7 +241,7 @@ class PageState(param.Parameterized):
 
     @property
     def trade_case(self) -> Case | None:
-        """The case that the page is in, if the frame is of its scene."""
+        """The open case, if the frame is of its scene."""
         case = cases_by_name().get(self.case)
         if case is None or self.frame is None:
             return None
@@ -250,12 +250,12 @@ class PageState(param.Parameterized):
         return case
 
     def pause(self) -> None:
-        """Have the run wait."""
+        """Pause the run."""
         self.running = False
         self.send(Pace(0.0))
 
     def go_on(self) -> None:
-        """Have the run go on, or begin anew if it has ended."""
+        """Continue the run, or begin it again if it has ended."""
         if self.is_over or self.is_costly:
             self.run(is_agreed=self.is_costly)
             return
@@ -264,7 +264,7 @@ class PageState(param.Parameterized):
         self.send(Pace(PACES[self.pace]))
 
     def step(self) -> None:
-        """Show the next stage of the search, and wait.
+        """Show the next stage of the search, then pause.
 
         After a whole iteration that is the local stage of the next one, for which the
         worker does both stages; then its linear stage.
@@ -284,7 +284,7 @@ class PageState(param.Parameterized):
             self.send(Step())
 
     def before_linear(self, frame: Frame) -> Frame:
-        """A frame with its bodies where the linear stage before the last one put them.
+        """A frame with the bodies at the positions of the previous linear stage.
 
         That of the iterate before, if it was kept; a search from nothing begins at
         rest.
@@ -305,18 +305,18 @@ class PageState(param.Parameterized):
         return replace(frame, deformed=replace(moved, status=frame.deformed.status))
 
     def show_stage(self, stage: str) -> None:
-        """Show the iterate up to one of its stages."""
+        """Show the iterate up to its local or its linear stage."""
         self._awaits_local = False
         if stage != self.selection.stage:
             self.select(stage=stage)
 
     def reset(self, iteration: int = 1) -> None:
-        """Begin anew, and wait at an iteration."""
+        """Restart the run, and pause at an iteration."""
         self.running = False
         self._start(self.settings, 0.0, steps=iteration)
 
     def seek(self, iteration: int | None) -> None:
-        """Show an earlier iterate of the run; None, and beyond the last, the newest.
+        """Show an earlier iterate; the newest for None, and beyond the last.
 
         Of an iterate that was not shown before, its frame is asked for; until it comes,
         the last one before it is shown.
@@ -340,7 +340,7 @@ class PageState(param.Parameterized):
     def _start(
         self, settings: Settings, pace: float | None = None, **options: Any
     ) -> None:
-        """Order a run with options of `Start`, by default at the page's pace."""
+        """Order a run with options of `Start`; default pace: that of the page."""
         self.number = next(RUNS)
         is_dragged = options.get("is_dragged", False)
         self.show_stage(LINEAR)
@@ -357,13 +357,13 @@ class PageState(param.Parameterized):
         self.send(Start(self.number, settings, pace, **options))
 
     def pin(self) -> None:
-        """Keep the present run to compare later ones with, or let the kept run go."""
+        """Pin the present run for comparison with later ones, or unpin it."""
         if self.frame is not None:
             self.pinned = None if self.pinned is not None else self.history
             self.ghost = self._ghost_at(self.frame)
 
     def _ghost_at(self, frame: Frame) -> Frame | None:
-        """The frame to compare a frame with, of the pinned or the last run.
+        """The frame for comparison: of the pinned or the last run.
 
         There is none where that run is of another structure.
         """
@@ -379,7 +379,7 @@ class PageState(param.Parameterized):
         return ghost
 
     def take(self, report: Report) -> None:
-        """Take a report of the worker."""
+        """Process a report of the worker."""
         match report:
             case messages.Began(number):
                 self.began = number
@@ -422,13 +422,13 @@ class PageState(param.Parameterized):
                 self.send(Ready())
 
     def _show_earlier(self, frame: Frame) -> None:
-        """Keep an earlier frame, and show it if it is the one that is looked for."""
+        """Store an earlier frame, and show the frame if it is the requested one."""
         self.history.add(frame)
         if self.iteration == frame.iteration:
             self.param.update(frame=frame, ghost=self._ghost_at(frame))
 
     def send_needs(self, *, is_news: bool = True) -> None:
-        """Order the extras and quantities in sight, if they differ from the last order.
+        """Order the visible extras and quantities, if they differ from the last order.
 
         A new worker is sent them in any case (`is_news`).
         """
@@ -450,7 +450,7 @@ class PageState(param.Parameterized):
                 self.send(Show(self.iteration))
 
     def turn(self, step: int = 1) -> None:
-        """Select the interface that is a number of interfaces further."""
+        """Select another interface, a number of interfaces further."""
         if self.frame is None:
             return
         run = self.frame.run
@@ -466,14 +466,14 @@ class PageState(param.Parameterized):
 
 
 def answer(settings: Settings) -> Settings:
-    """Settings with the answer at once in place of a search that is watched."""
+    """Settings that give the answer at once, without a visible search."""
     if settings.finish != SEARCH["finish"]:
         return settings
     return settings.replace(**answering(settings))
 
 
 def answering(settings: Settings) -> dict[str, str]:
-    """Values of settings with which a run shows the answer at once.
+    """Values of settings for which a run gives the answer at once.
 
     The start is that of the fast method; where this starts from zero, that of the
     settings stays.

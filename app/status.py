@@ -1,4 +1,4 @@
-"""Texts on a run: the line of its status, and key figures at an instant."""
+"""Texts on a run: the status line, and key figures at an instant."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ OWNER = "after the linear stage that follows:"
 
 
 def status_line(state: PageState) -> str:
-    """Progress or end of the run, with the method's message behind *details* (HTML).
+    """HTML of progress or end of the run, with the method's message as *details*.
 
     Messages of the page stand beside it in one line, and in full in the details.
     """
@@ -81,7 +81,7 @@ def status_line(state: PageState) -> str:
 
 
 def spoken_status(state: PageState) -> str:
-    """Text for screen readers: messages, and the status of a run that rests."""
+    """Text for screen readers: messages, and the status of a paused or ended run."""
     sentences = _said(state)
     frame = state.frame
     newest = state.newest
@@ -123,14 +123,14 @@ def _progress(state: PageState, frame: Frame, newest: Frame) -> tuple[str, str]:
 
 
 def iterations(count: int) -> str:
-    """A number of iterations in words."""
+    """Text of a number of iterations."""
     if count == 1:
         return "1 iteration"
     return f"{count} iterations"
 
 
 def _details(frame: Frame) -> list[str]:
-    """Sentences on the method and its end, and the key figures over time."""
+    """Sentences on the method and the end of the run, and key figures over time."""
     settings = frame.run.settings
     parts = settings.n_substructures
     decomposition = "one substructure"
@@ -157,7 +157,7 @@ def _details(frame: Frame) -> list[str]:
 
 
 def _said(state: PageState) -> list[str]:
-    """Messages of the page, then those on the run that is shown."""
+    """Messages of the page, then those on the shown run."""
     messages = [text for text in (state.message, state.refusal) if text]
     frame = state.frame
     if frame is not None and frame.status is not None:
@@ -171,7 +171,7 @@ def _said(state: PageState) -> list[str]:
 
 
 def figures_line(frame: Frame, selection: Selection) -> str:
-    """Key figures of the structure at the selected instant, in a line (HTML).
+    """HTML line of key figures of the structure at the selected instant.
 
     The largest and the last value appear over each of them. A run that is known to have
     no solution at some instants has dashes in place of values. Figures are those of a
@@ -213,12 +213,12 @@ def figures_line(frame: Frame, selection: Selection) -> str:
 
 
 def _is_lost(frame: Frame) -> bool:
-    """Check whether some instants of a run are known to have no solution."""
+    """Check whether some instants of a run have no solution, as far as known."""
     return frame.status is not None and frame.status.lost_from is not None
 
 
 def _of_loop(frame: Frame) -> list[KeyFigure]:
-    """Key figures of the loop of a frame; a side that is held is not moved."""
+    """Key figures of the loop of a frame; displacement of a held side is zero."""
     figures = []
     moved = float(np.nanmax(np.abs(frame.deformed.nodes), initial=0.0))
     for figure in key_figures((frame.run.across, frame.run.up), frame.loop):
@@ -229,7 +229,7 @@ def _of_loop(frame: Frame) -> list[KeyFigure]:
 
 
 def _unit_of(figure: KeyFigure) -> Callable[[float], str]:
-    """Unit of a key figure, chosen once for the run; shares are in per cent."""
+    """Unit of a key figure, the same for the whole run; shares are in per cent."""
     if not figure.unit:
         return percent
     return unit_for(abs(figure.largest), figure.unit)

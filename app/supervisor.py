@@ -1,4 +1,4 @@
-"""The supervisor of a page's worker, which is started anew if it ends or hangs."""
+"""The supervisor of a page's worker, which restarts a worker that ends or hangs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ GIVEN_UP = (
 
 
 class Supervisor:
-    """Link between a page and its worker: orders to the one, reports to the other.
+    """Link between a page and its worker: orders to the worker, reports to the page.
 
     A worker that ends, hangs, or does not begin a run in time is replaced, and the run
     begins anew; a run that has failed twice waits for another setting.
@@ -49,7 +49,7 @@ class Supervisor:
         self._state.send_needs()
 
     def open(self) -> None:
-        """Take reports from now on, as a browser is there."""
+        """Process reports from now on, as the browser is connected."""
         self._is_open = True
         self._asked = time.monotonic()
         self.take()
@@ -61,7 +61,7 @@ class Supervisor:
             self._worker = None
 
     def take(self) -> None:
-        """Take the reports that have come."""
+        """Process the reports that have arrived."""
         while self._reports:
             worker, report = self._reports.popleft()
             if worker is not self._worker:
@@ -73,14 +73,14 @@ class Supervisor:
                 self._state.take(report)
 
     def _send(self, order: Order) -> None:
-        """Send an order, and note when a run was ordered."""
+        """Send an order, and store the time of an ordered run."""
         if isinstance(order, Start):
             self._asked = time.monotonic()
         if self._worker is not None:
             self._worker.send(order)
 
     def _on_report(self, worker: Worker, report: Report | None) -> None:
-        """Bring a report to the document's own thread, once the page has loaded."""
+        """Pass a report to the thread of the document, after the page has loaded."""
         if not isinstance(report, Alive):
             self._reports.append((worker, report))
             if self._is_open:
@@ -98,7 +98,7 @@ class Supervisor:
             self._restart("")
 
     def _restart(self, message: str) -> None:
-        """Run the settings in a new process, unless that has failed twice."""
+        """Run the settings in a new process, unless two processes have failed."""
         state = self._state
         self.end()
         # Without a message the worker was only slow: that is no failure of the run.

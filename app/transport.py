@@ -46,7 +46,7 @@ WATCH = {"Watch": "accuracy", "Answer": "at-once"}
 
 
 class Transport:
-    """The buttons and sliders that move through a run.
+    """The buttons and sliders to move through a run.
 
     `view` stands in the row above the scene, `play_button` beside the time line, and
     `scrub` below it.
@@ -92,7 +92,7 @@ class Transport:
         self._show()
 
     def present(self) -> None:
-        """Have the widgets of the view for a projector: the scene, and the way out.
+        """Add the widgets of the view for a projector: choice of scene, and exit.
 
         A page has them once it has been such a view.
         """
@@ -119,7 +119,7 @@ class Transport:
         self.view.extend([scene, close])
 
     def _add_turns(self) -> None:
-        """Have the buttons for one contact of several, once a run has as many."""
+        """Add the buttons to choose a contact, if a run has several."""
         frame = self._state.frame
         if frame is not None and len(frame.run.surfaces) > 1 and not len(self._turns):
             back = _button("arrow_upward", "Contact before (I)", self._turn_back)
@@ -156,7 +156,7 @@ class Transport:
         return [finish, linked_to(self._state, "pace", pace)]
 
     def _make_scrub(self) -> pmui.IntSlider:
-        """The slider that goes back through the iterations.
+        """Make the slider to go back through the iterations.
 
         It counts from the newest iterate: so its value rests while a run goes on.
         """
@@ -175,7 +175,7 @@ class Transport:
         return slider
 
     def keys(self) -> dict[str, Any]:
-        """Actions of the keys, by their names in the browser."""
+        """Actions of the keys, by the names of keys in the browser."""
         return {
             " ": self._toggle,
             "s": self._state.step,
@@ -191,19 +191,19 @@ class Transport:
 
     @property
     def _goes_on(self) -> bool:
-        """Check whether the run goes on until it is paused."""
+        """Check whether the run continues until it is paused."""
         state = self._state
         return state.running and not state.is_over and not state.is_costly
 
     def _toggle(self) -> None:
-        """Run or pause; begin a run anew that has ended."""
+        """Run or pause; restart a run that has ended."""
         if self._goes_on:
             self._state.pause()
         else:
             self._state.go_on()
 
     def play(self, until: float = 1.0, *, by_itself: bool = False) -> None:
-        """Play from the selected instant to a share of the interval and again, or stop.
+        """Play from the selected instant to a share of the interval, again and again.
 
         Playing ends, too, once another instant is selected. What plays by itself, as no
         person has asked for it, ends after a while where it began.
@@ -245,7 +245,7 @@ class Transport:
         return bool(self._state.lesson or self._state.case or self._state.room)
 
     def _enliven(self) -> None:
-        """Play the result of a scene's first search, until a person does something.
+        """Play the result of a scene's first search until the user acts.
 
         A run that has the answer at once is not played.
         """
@@ -256,7 +256,7 @@ class Transport:
             self._is_lively = True
 
     def _touch(self, *events: Any) -> None:
-        """Stop a page that plays by itself; with another scene it may play again.
+        """Stop automatic playing; another scene may play again.
 
         Changed settings are then shown at the initial instant. A dragged arrow stays at
         the instant at which it was taken hold of.
@@ -271,7 +271,7 @@ class Transport:
                 self._state.select(phase=Selection.phase)
 
     def _move(self, instants: int) -> None:
-        """Select the instant that is a number of instants later."""
+        """Select another instant, a number of instants later."""
         self.stop()
         frame = self._state.frame
         if frame is not None:
@@ -284,7 +284,7 @@ class Transport:
         self._state.turn(-1)
 
     def _move_iteration(self, step: int) -> None:
-        """Show the iterate before the present one (step -1), or after it (1)."""
+        """Show the previous iterate (step -1), or the next one (1)."""
         state = self._state
         shown = state.iteration
         if shown is None:
@@ -292,7 +292,7 @@ class Transport:
         state.seek(shown + step)
 
     def _seek(self, back: int) -> None:
-        """Show the iterate to which a person moved the slider, from the newest back."""
+        """Show the iterate at the slider's position, counted back from the newest."""
         # The browser sends back what the page had set: nobody moved the slider.
         if self._echoes.has(back):
             return
@@ -309,7 +309,7 @@ class Transport:
         self._state.change(**values)
 
     def _show(self) -> None:
-        """Show the state of the run, but not while a slider is dragged.
+        """Show the state of the run, except while a slider is dragged.
 
         Each move begins a run that ends at once: the buttons would flicker.
         """
@@ -331,7 +331,7 @@ class Transport:
             self._show_scene()
 
     def name_iterate(self) -> None:
-        """Name the iterate that a picture shows, among all, at the slider."""
+        """Write the number of the shown iterate, and of all, at the slider."""
         frame = self._state.frame
         if frame.is_followed:
             self.scrub.label = "Answer"
@@ -342,7 +342,7 @@ class Transport:
             self.scrub.label = f"Iteration {frame.iteration} of {last}"
 
     def _follow(self) -> None:
-        """Set the slider to the shown iterate; after a move by hand it rests."""
+        """Set the slider to the shown iterate, except after a move by the user."""
         frame = self._state.frame
         slider = self.scrub
         if self._state.is_over and not self._is_touched:
@@ -378,7 +378,7 @@ class Transport:
 def _button(
     icon: str, description: str, act: Callable[[], None], *roles: str
 ) -> pmui.Button:
-    """A button with an icon alone; an `IconButton` would keep its first icon."""
+    """A button with only an icon; an `IconButton` would keep its first icon."""
     return button(
         "",
         act,

@@ -1,4 +1,4 @@
-"""Units that values are read in: each setting, axis and figure keeps its unit."""
+"""Units for readers: each setting, axis and figure keeps its unit."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ seven digits."""
 
 
 def unit_of(definition: Parameter) -> Unit:
-    """The unit of a setting, by its default value or else its range."""
+    """The unit of a setting on the page, by its default value or range."""
     unit = properties_of(definition).unit
     if not isinstance(definition, param.Number):
         return Unit(unit)
@@ -31,7 +31,7 @@ def unit_of(definition: Parameter) -> Unit:
 
 @cache
 def units_of_points(scene: str, name: str, units: tuple[str, ...]) -> tuple[Unit, ...]:
-    """The units in which the columns of a table are read, by the scene's defaults.
+    """The units of a table's columns on the page, by the scene's defaults.
 
     `units` are the SI units that the path has with the other settings
     (`Settings.curve_units`).
@@ -46,7 +46,7 @@ def units_of_points(scene: str, name: str, units: tuple[str, ...]) -> tuple[Unit
 
 
 def typed(text: str, unit: Unit, si: str) -> float:
-    """Value in SI of a typed number, in a unit or in the unit that is typed behind it.
+    """Value in SI of a typed number, in a default unit or a typed one.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def typed(text: str, unit: Unit, si: str) -> float:
 
 
 def settled(value: float, size: float) -> float:
-    """A value, or 0 where it is rounding beside a size of its kind, both in SI."""
+    """A value, or 0 where it is a rounding error of a reference size, both in SI."""
     if abs(value) <= ROUNDING * abs(size):
         return 0.0
     return value

@@ -1,4 +1,4 @@
-"""Widgets that several parts of the page share."""
+"""Widgets used by several parts of the page."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ MEANINGS = _meanings()
 
 
 def html(template: str, **values: Any) -> str:
-    """HTML of a template, in which values are escaped."""
+    """HTML of a template with escaped values."""
     return TEMPLATES.get_template(template).render(values)
 
 
 def explained(text: str, *terms: str) -> Markup:
-    """HTML of a text in which terms of the glossary have their meaning at hand.
+    """HTML of a text with explanations of the terms in the glossary.
 
     It shows under the pointer, and once the term is tapped or has the focus.
     """
@@ -84,7 +84,7 @@ def looks(*roles: str) -> dict[str, Any]:
 
 
 class PlainText(pn.viewable.Viewer):
-    """Text that is shown literally: nothing in it is markup.
+    """Text that is shown literally, without markup.
 
     All texts from a file, an address or a class are shown by this. Markdown, HTML and
     `Str` panes, and the `Alert`, `Typography` and `StaticText` of panel-material-ui,
@@ -114,17 +114,17 @@ def button(label: str, act: Callable[[], object], **look: Any) -> pmui.Button:
 
 
 def wrapped(*objects: Any, **look: Any) -> pn.Row:
-    """A row that wraps where there is no room: simpler than a `FlexBox`."""
+    """A row that wraps: simpler than a `FlexBox`."""
     return pn.Row(*objects, margin=0, **{"styles": {"flex-wrap": "wrap"}, **look})
 
 
 def up_to(width: int) -> dict[str, Any]:
-    """Width of a part, px, which is less where a phone has no room for it."""
+    """CSS width of a part: px, or less on a narrow screen."""
     return {"sizing_mode": "stretch_width", "max_width": width}
 
 
 def dialog(title: str, *objects: Any, **look: Any) -> pmui.Dialog:
-    """A dialog that a click beside it closes, too."""
+    """A dialog that a click outside closes, too."""
     return pmui.Dialog(
         *objects,
         title=title,
@@ -138,7 +138,7 @@ def dialog(title: str, *objects: Any, **look: Any) -> pmui.Dialog:
 def file_button(
     label: str, accept: str, take: Callable[[bytes, str], object], **look: Any
 ) -> pmui.FileInput:
-    """A button that opens a file, whose content and name a function takes.
+    """A button to open a file: calls a function with content and name.
 
     It keeps its label: a message tells what became of the file.
     """
@@ -168,7 +168,7 @@ def file_button(
 def download(
     label: str, filename: str, make: Callable[[], str | bytes], **look: Any
 ) -> Any:
-    """A button that, once pressed, saves the text that a function makes."""
+    """A button to save a text, which a function makes when the button is pressed."""
 
     def data() -> io.BytesIO:
         content = make()
@@ -183,6 +183,6 @@ def download(
 
 
 def mask_of(emblem: Icon) -> dict[str, str]:
-    """A small picture as a mask, which takes the colour of its text."""
+    """A small picture as a CSS mask in the colour of its text."""
     picture = quote(html("icon.svg", icon=emblem))
     return {"mask": f'url("data:image/svg+xml,{picture}") center / contain no-repeat'}

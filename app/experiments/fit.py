@@ -1,4 +1,4 @@
-"""The tab Fit: settings with which a run is nearest to a measured loop."""
+"""The tab Fit: settings for which a run is nearest to a measured loop."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ NO_SETTING = f"Tick up to {MOST} settings. They begin as they are set."
 
 
 class FitTab(CommandTab):
-    """The tab Fit; the state has the measured loop and the initial settings."""
+    """The tab Fit: measured loop and initial settings are those of the state."""
 
     def __init__(self, state: PageState) -> None:
         opener = TableOpener(state, "Open a measured loop", TABLES, 230)
@@ -47,7 +47,7 @@ class FitTab(CommandTab):
 
     @property
     def measured(self) -> MeasuredLoop | None:
-        """The measured loop that was opened, if it has the quantities of the scene."""
+        """The opened measured loop, if it has the quantities of the scene."""
         brought = self.state.brought
         if not isinstance(brought, MeasuredLoop):
             return None
@@ -58,7 +58,7 @@ class FitTab(CommandTab):
 
     @property
     def command(self) -> Command | None:
-        """The fit of the ticked settings to the loop; None without either."""
+        """Command of the fit of ticked settings to the loop; None without either."""
         names = ",".join(self.chosen.value)
         loop = self.measured
         if loop is None or not names:
@@ -70,7 +70,7 @@ class FitTab(CommandTab):
 
     @property
     def words(self) -> str:
-        """Description of the fit, and of what is missing to start it."""
+        """Description of the fit, and of missing input."""
         missing = ""
         if self.measured is None:
             missing = NO_LOOP
@@ -82,7 +82,7 @@ class FitTab(CommandTab):
         )
 
     def show(self) -> None:
-        """Offer the settings that can be fitted, and show the last fit."""
+        """Show the settings that can be fitted, and the last fit."""
         settings = self.state.settings
         definitions = settings.definitions()
         titles = {title_of(definitions[name]): name for name in fittable(settings)}
@@ -95,13 +95,13 @@ class FitTab(CommandTab):
         self._draw()
 
     def look(self) -> None:
-        """Follow the fit, and draw its nearest loop so far."""
+        """Show the progress of the fit, and its nearest loop so far."""
         super().look()
         if self.job is not None and self.state.tab == "Fit":
             self._draw()
 
     def _draw(self) -> None:
-        """Draw the measured and the nearest loop, as long as there is no report."""
+        """Draw the measured and the nearest loop until there is a report."""
         has_report = self.job is None and bool(self.written)
         chart = None
         if not has_report:
@@ -130,7 +130,7 @@ class FitTab(CommandTab):
         return Panel(measured.source, x, y, tuple(curves))
 
     def use(self) -> None:
-        """Run the fitted settings on the live tab, rounded to six digits."""
+        """Run the fitted settings, rounded to six digits, on the live tab."""
         found = settings_from_toml(self.written[SETTINGS].decode())
         # More digits would only fill fields and addresses.
         rounded = {

@@ -1,4 +1,4 @@
-"""Long work of pages: commands, one at a time for all, and sweeps side by side."""
+"""Long work of pages: commands, one at a time on the server, and parallel sweeps."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ OUT = "out"
 
 
 def follow(look: Callable[[], None], end: Callable[[], None]) -> None:
-    """Call `look` from time to time, and `end` when the page is closed."""
+    """Call `look` periodically, and `end` when the page is closed."""
     document = pn.state.curdoc
     if document is not None and document.session_context is not None:
         # Not before the browser is there: what changes while it loads may not reach it.
@@ -47,7 +47,7 @@ def follow(look: Callable[[], None], end: Callable[[], None]) -> None:
 
 @cache
 def executor() -> Executor:
-    """The executor of the commands of all pages: one process at a time on this machine.
+    """The executor of the commands of all pages: one process at a time.
 
     Two commands at a time would spoil each other's measurements of time, and thirty
     would leave the server no processor.
@@ -123,7 +123,7 @@ class Job:
         return ""
 
     def cancel(self) -> None:
-        """End the command; a process at work is ended at once."""
+        """End the command, and its process if there is one."""
         self._is_cancelled = self._is_cancelled or not self.is_over
         self._future.cancel()
 
@@ -134,7 +134,7 @@ class Job:
 
 
 def share_of(named: str, users: int) -> str:
-    """Executor of one of several sweeps: some local processes, or a whole cluster.
+    """Executor of one of several sweeps: a share of local processes, or a cluster.
 
     A cluster has a queue. One queue for all local sweeps would have everybody wait for
     the longest run of anybody.
@@ -147,7 +147,7 @@ def share_of(named: str, users: int) -> str:
 
 
 class Sweep:
-    """Runs of a plan, on a thread of its own.
+    """Runs of a plan, in a separate thread.
 
     `rows` are the finished runs; `message` says why the sweep ended early, or is empty.
     """

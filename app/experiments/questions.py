@@ -60,7 +60,7 @@ class Question:
         return " ".join((*self.vary, self.of))
 
     def plan(self, settings: Settings) -> Plan:
-        """Runs that answer the question, all else as in some settings.
+        """Plan of the runs that answer the question, with other settings as given.
 
         Raises
         ------
@@ -74,7 +74,7 @@ class Question:
         return plan
 
     def asked(self, settings: Settings) -> Settings:
-        """Settings of the runs that answer the question, made of those of the page.
+        """Settings of the runs that answer the question, from those of the page.
 
         Runs finish at once, as nobody watches them; where LATIN's own iterations are
         counted, they go on to the accuracy of the question.
@@ -102,7 +102,7 @@ class Question:
 
 
 def question_of(text: str, settings: Settings) -> Question:
-    """The question of a text; where settings do not have it, the first ready one."""
+    """Question from a text; the first ready question if settings lack its terms."""
     *vary, of = text.split() or [""]
     question = Question(tuple(vary), of)
     # The text may come from an address, or from a scene that has other settings.
@@ -116,7 +116,7 @@ def question_of(text: str, settings: Settings) -> Question:
 
 
 def variable(settings: Settings) -> dict[str, Parameter]:
-    """Settings that may vary, as they do something here and have several values."""
+    """Settings that may vary: those with an effect and several values."""
     known = {}
     for name, definition in settings.definitions().items():
         is_number = isinstance(definition, param.Number)
@@ -143,7 +143,7 @@ def can_be_read(quantity: Quantity, settings: Settings) -> bool:
 
 
 def names_of(definition: Parameter) -> list[str]:
-    """Names of the values of a setting; none where they are numbers."""
+    """Names of the values of a setting; empty if they are numbers."""
     if isinstance(definition, param.Boolean):
         return ["false", "true"]
     if isinstance(definition, CurveParameter | TextParameter):
@@ -163,7 +163,7 @@ def proposed(settings: Settings, name: str) -> str:
 
 
 def _range(name: str, low: float, high: float, count: int, *, is_log: bool) -> str:
-    """Values of a setting between two ends, in even steps or ratios (text)."""
+    """Text of a range of values between two ends, in equal steps or ratios."""
     text = f"{name}={low:g}:{high:g}:{count}"
     if is_log:
         text += LOG
@@ -179,7 +179,7 @@ def iterations_over_k(settings: Settings) -> Question:
 
 
 def _iterations(settings: Settings, accuracy: float, *vary: str) -> Question:
-    """Iterations to an accuracy of the force over settings; all without a reference."""
+    """Question of iterations to an accuracy; of all iterations without a reference."""
     of = "iterations"
     if has_reference(settings):
         of = f"iterations_to_force@{accuracy}"
@@ -187,7 +187,7 @@ def _iterations(settings: Settings, accuracy: float, *vary: str) -> Question:
 
 
 def _bricks(settings: Settings) -> Question | None:
-    """Iterations over the number of courses, with and without the macro problem.
+    """Question of iterations over the courses, with and without the macro problem.
 
     The load passes from course to course. Without courses there is no question (None).
     """
@@ -200,7 +200,7 @@ def _bricks(settings: Settings) -> Question | None:
 
 
 def _energy(settings: Settings, count: int, *others: str) -> Question | None:
-    """Energy over the load and other settings, from a tenth of their sliders' ends.
+    """Question of energy over load and other settings, over a decade of sliders.
 
     There is no question (None) where no number sets the size of the load, or another
     setting does nothing. A positive load that varies alone has values of even ratios.
@@ -225,7 +225,7 @@ def _energy(settings: Settings, count: int, *others: str) -> Question | None:
 
 
 def _load_of(settings: Settings, numbers: list[str]) -> str | None:
-    """The first number, chief settings before others, that a load path multiplies."""
+    """The setting of the main load: the first number that scales a load path."""
     definitions = settings.definitions()
     for name in (*settings.CHIEF, *numbers):
         if name in numbers and properties_of(definitions[name]).path:
@@ -248,7 +248,7 @@ READY: dict[str, Callable[[Settings], Question | None]] = {
 
 
 class SettingRange:
-    """Fields for the name of a setting that varies and for its values.
+    """Fields for a varied setting and its values.
 
     `changed` is called when a person has changed a field.
     """
@@ -273,7 +273,7 @@ class SettingRange:
             field.param.watch(self._on_field, "value")
 
     def show(self, settings: Settings, text: str) -> None:
-        """Show a setting and its values in the unit of its control; "" shows none."""
+        """Show a setting and its values in the unit of its control; nothing for ""."""
         self._settings = settings
         # Fields report these changes, too, as if a person had made them.
         self._is_updating = True
@@ -327,7 +327,7 @@ class SettingRange:
         return f"{name}={values.replace(' ', '')}"
 
     def _on_field(self, event: param.parameterized.Event) -> None:
-        """Report that a field has changed; another setting brings its own values."""
+        """Report a changed field; another setting gets its proposed values."""
         if self._is_updating:
             return
         if event.obj is self.name:

@@ -1,4 +1,4 @@
-"""Tabs that start and follow a long command and show its report; the tab Reports."""
+"""Tabs that run a long command and show its report; the tab Reports."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Files = dict[str, bytes]
 
 
 class CommandTab(ABC):
-    """A tab with fields for a command, buttons that start and end it, and its report.
+    """A tab with fields for a command, buttons to start and end it, and its report.
 
     `report` is the title of the chosen report; `page` shows its last result, and
     `files` has buttons that save its files. `job` is the command that is waiting or
@@ -68,25 +68,25 @@ class CommandTab(ABC):
     @property
     @abstractmethod
     def command(self) -> Command | None:
-        """The command of the present fields, if it can be started."""
+        """The command of the fields, if it can be started."""
 
     @property
     @abstractmethod
     def words(self) -> str:
-        """Description of the command, or of what is missing to start it."""
+        """Description of the command, or of missing input."""
 
     @property
     def report(self) -> str:
-        """Title of the report that is started and shown."""
+        """Title of the report."""
         return self._tab
 
     @property
     def written(self) -> Files:
-        """Files of the last report, whatever is set now."""
+        """Files of the last report."""
         return self._done.get(self.report, {})
 
     def start(self) -> None:
-        """Run the command, in place of a running one."""
+        """Start the command, and end a running one."""
         self.end()
         self._started = self.report
         self.job = Job(*self.command)
@@ -106,7 +106,7 @@ class CommandTab(ABC):
             self.job = None
 
     def look(self) -> None:
-        """Show the progress of the command, and its report once it is over."""
+        """Show the progress of the command, and its report at the end."""
         job = self.job
         if job is None:
             return
@@ -123,7 +123,7 @@ class CommandTab(ABC):
         self.show()
 
     def show(self) -> None:
-        """Show the chosen command, and its report if there is one."""
+        """Show the command of the fields, and its report if there is one."""
         # What is hidden is shown when it is opened.
         if self.state.tab != self._tab:
             return
@@ -144,7 +144,7 @@ class CommandTab(ABC):
 
 
 class Reports(CommandTab):
-    """The tab of the reports of the command line, of which `kind` chooses one."""
+    """The tab Reports: reports of the command line, chosen by `kind`."""
 
     def __init__(self, state: PageState) -> None:
         self.kind = pmui.RadioButtonGroup(
@@ -177,7 +177,7 @@ class Reports(CommandTab):
 
 
 def shown(files: Files) -> str:
-    """The page among a report's files in a frame, with links to this server (HTML)."""
+    """HTML of a report's page in a frame, with links to this server."""
     pages = [name for name in files if name.endswith(".html")]
     if not pages:
         return ""

@@ -1,4 +1,4 @@
-"""The tab What if: a question over a range of settings, and a chart of its runs."""
+"""The tab What if: a question over ranges of settings, and a chart of its runs."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ class WhatIf:
         self._meshed = PlainText(margin=(10, 8))
 
     def start(self) -> None:
-        """Run the sweep of the question, in place of a running one."""
+        """Start the sweep of the question, and end a running one."""
         refusal = self.question.refusal(self.state.settings)
         if refusal:
             self.message.object = refusal
@@ -131,7 +131,7 @@ class WhatIf:
                 self._job = None
 
     def table(self) -> str:
-        """Rows of the sweep so far, as CSV in SI, with all settings."""
+        """CSV of the rows of the sweep so far, in SI, with all settings."""
         if self.sweep is None:
             return ""
         rows = sorted(self.sweep.rows, key=lambda row: row.number)
@@ -151,7 +151,7 @@ class WhatIf:
         return replace(chart, runs=replace(chart.runs, said=said))
 
     def _show(self) -> None:
-        """Show and run the question, or a ready one where the scene lacks it.
+        """Show and run the question, or a ready one if the scene lacks its terms.
 
         A question that was put together in the fields waits for the button.
         """
@@ -177,7 +177,7 @@ class WhatIf:
             self._draw()
 
     def _show_quantity(self, settings: Settings) -> None:
-        """Show the quantity of the question, and its parameter if it has one."""
+        """Show the quantity of the question, and its parameter if any."""
         name, _, at = self.question.of.partition("@")
         options = {
             quantity.title: key for key, quantity in quantities(settings).items()
@@ -189,7 +189,7 @@ class WhatIf:
             self._at.label = parameter.words.replace("{:g}", "").strip() or "at"
 
     def _chosen_quantity(self) -> str:
-        """The quantity of the fields with its parameter, as `Question.of` has it."""
+        """Quantity and parameter of the fields, as text for `Question.of`."""
         name = self._of.value
         parameter = QUANTITIES[name].parameter
         if parameter is None:
@@ -202,7 +202,7 @@ class WhatIf:
         return f"{name}@{at}"
 
     def _change(self) -> None:
-        """Take the question from the fields; a refused one stays there to be mended."""
+        """Take the question from the fields; a refused one stays in the fields."""
         if self._is_updating:
             return
         settings = self.state.settings
@@ -228,7 +228,7 @@ class WhatIf:
             self._draw()
 
     def _on_mesh(self) -> None:
-        """Start the study of three meshes and three numbers of instants, or end it."""
+        """Start or end the study of three meshes and three numbers of instants."""
         if self._job is not None:
             self._job.cancel()
         else:
@@ -237,7 +237,7 @@ class WhatIf:
         self.look()
 
     def _draw(self) -> None:
-        """Draw the chart of the runs so far, with a message on them."""
+        """Draw the chart of the runs so far, with a message."""
         sweep = self.sweep
         settings = self.state.settings
         self._seen = len(sweep.rows), sweep.is_over
@@ -257,7 +257,7 @@ class WhatIf:
 
 
 def _first_failure(sweep: Sweep) -> str:
-    """Sentence on the first run of a sweep without an answer; "" if all have one."""
+    """Sentence on the first run of a sweep without an answer, or ""."""
     failed = [row for row in sweep.rows if not row.holds]
     if not failed:
         return ""
@@ -272,7 +272,7 @@ def _first_failure(sweep: Sweep) -> str:
 
 
 def _is_of(plan: Plan, settings: Settings) -> bool:
-    """Check whether a plan has settings but for those that vary in it."""
+    """Check whether a plan has given settings, apart from the varied ones."""
     if settings.scene != plan.settings.scene:
         return False
     varied = {axis.name: None for axis in plan.axes}

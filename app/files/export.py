@@ -1,4 +1,4 @@
-"""Files that a person takes away from the page: tables, a program, a page of plots."""
+"""Files that a user saves from the page: tables, a program, a page of plots."""
 
 from __future__ import annotations
 
@@ -92,13 +92,13 @@ def program(settings: Settings) -> str:
 
 
 def history_table(frame: Frame) -> str:
-    """Scalars of every iteration of a run, a line each (CSV with one line of heads)."""
+    """CSV of the scalars of a run, one row per iteration, one line of heads."""
     table = pd.DataFrame(dict(frame.history)).rename(columns={"seconds": "seconds, s"})
     return table.astype({"iteration": int}).to_csv(index=False)
 
 
 def path_table(frame: Frame) -> str:
-    """All loads over time (CSV with one line of heads), in the units of their words."""
+    """CSV of all loads over time in units for readers, one line of heads."""
     description = frame.run.geometry.description
     table = pd.DataFrame({"t, s": description.instants})
     for symbol, values, unit in given_in(description):
@@ -111,7 +111,7 @@ def path_table(frame: Frame) -> str:
 
 
 def contact_table(frame: Frame) -> str:
-    """Contact at all points and instants of the interfaces that a frame has.
+    """CSV of contact at all points and instants of the interfaces of a frame.
 
     CSV with one line of heads, in SI: of several interfaces the name, position x, time
     t, friction on the body above, as on plots a traction or a force per length,
@@ -146,7 +146,7 @@ def contact_table(frame: Frame) -> str:
 
 
 def plot_table(view: View) -> str:
-    """Points of a plot's curves, a line each (CSV with one line of heads).
+    """CSV of the points of a plot's curves, one row per point, one line of heads.
 
     Columns are those of the plot's sources, in the units of its axes; paths are
     numbered, and a curve has the name of its source. Words and looks are left out.
@@ -178,7 +178,7 @@ def plot_table(view: View) -> str:
 
 
 def offline_page(state: PageState, views: Sequence[View]) -> str:
-    """The run that is shown as a page that loads nothing (HTML).
+    """HTML of the shown run as a page that loads nothing.
 
     It has the views in sight, which are not changed, at all instants, the status, the
     key figures and all settings, light or dark as the page.
@@ -235,7 +235,7 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
 
 
 def _at(selection: Selection, run: Run, column: int) -> Selection:
-    """A selection with the instant of a column of the run."""
+    """A selection at the instant of a column of the run."""
     phase = 0.0
     if run.instants[-1]:
         phase = float(run.instants[column] / run.instants[-1])
@@ -243,14 +243,14 @@ def _at(selection: Selection, run: Run, column: int) -> Selection:
 
 
 def _instant(run: Run, column: int) -> str:
-    """Words on the instant of a column of the run."""
+    """Text of the instant of a column of the run."""
     end = float(run.instants[-1])
     unit = unit_for(end, "s")
     return f"At {unit(float(run.instants[column]))} of {unit(end)}."
 
 
 def _document(views: Sequence[View], **widgets: Model) -> Document:
-    """A document of figures and of widgets, which the template finds by their names."""
+    """A Bokeh document of figures and widgets, with names for the template."""
     page = Document()
     for name, widget in widgets.items():
         widget.name = name
@@ -262,7 +262,7 @@ def _document(views: Sequence[View], **widgets: Model) -> Document:
 
 
 def _copies(views: Sequence[View], run: Run) -> list[View]:
-    """Views of the same kinds with new figures, in which nothing is dragged."""
+    """Views of the same kinds with new figures, which do not react to the pointer."""
     # Models of a figure cannot stand in two documents.
     copies = [type(view)(view.state) for view in views]
     for view in copies:
@@ -289,7 +289,7 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
 
 
 def _settings_table(settings: Settings) -> list[dict[str, str]]:
-    """Title, value with its unit, and name of the settings that do something."""
+    """Rows (title, value with unit, name) of the settings that apply."""
     rows = []
     for name, definition in settings.definitions().items():
         if settings.applies(name):
@@ -299,7 +299,7 @@ def _settings_table(settings: Settings) -> list[dict[str, str]]:
 
 
 def _written(value: Any, definition: Parameter) -> str:
-    """A value of a setting as it is read."""
+    """Text of a value of a setting."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, int | float):
@@ -310,7 +310,7 @@ def _written(value: Any, definition: Parameter) -> str:
 
 
 def _replay(page: Document, count: int, show: Callable[[int], None]) -> CustomJS:
-    """A script that shows one of several pictures, from the values that differ."""
+    """JavaScript that shows one of several pictures, from the values that differ."""
     changes: dict[tuple[Model, str], list[Any]] = {}
     page.on_change(lambda event: changes.setdefault((event.model, event.attr), []))
     # The first round finds the properties that change, the second one their values.
@@ -340,7 +340,7 @@ def _replay(page: Document, count: int, show: Callable[[int], None]) -> CustomJS
 
 
 def offers(state: PageState, views: Sequence[View]) -> list[Any]:
-    """Buttons that save the run, and the data of the plots in sight."""
+    """Buttons that save the run, and the data of the visible plots."""
     frame = state.frame
     if frame is None:
         return [pmui.Typography("There is no run yet.")]

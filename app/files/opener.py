@@ -1,4 +1,4 @@
-"""Buttons that open and save files, and a dialog of the columns of a table."""
+"""Buttons to open and save files, and a dialog for the columns of a table."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ SHOWN = 5
 
 
 def files_panel(state: PageState, width: int) -> pn.Column:
-    """Buttons that save and reset settings and open files."""
+    """Buttons to save and reset settings, and to open files."""
     look: dict[str, Any] = {"width": width, "margin": (4, 0), "size": "small"}
     kinds = ",".join([".toml", *MESHES, TABLES])
     opener = TableOpener(state, "Open settings, a table or a mesh", kinds, width)
@@ -78,7 +78,7 @@ def files_panel(state: PageState, width: int) -> pn.Column:
 
 
 class TableOpener:
-    """A button that opens a file, a message on it, and a dialog of its columns.
+    """A button to open a file, a message on the file, and a dialog for its columns.
 
     The dialog has fields for the `use` of the table, and for the names and units of its
     columns (`heads`). Each choice holds at once.
@@ -155,7 +155,7 @@ class TableOpener:
         self.dialog.open = True
 
     def _open(self, data: bytes, source: str) -> None:
-        """Use a file by its content; for a measured loop show the columns, too."""
+        """Use a file by its content; for a measured loop also show the columns."""
         self._table = None
         self._source = source
         self._say("")
@@ -165,7 +165,7 @@ class TableOpener:
             self.show()
 
     def _read(self, source: str, data: bytes) -> tuple[Content, str]:
-        """Content of a file, and a message on it."""
+        """Content of a file, and a message on the content."""
         if source.lower().endswith(".toml"):
             return settings_in(data, source)
         if source.lower().endswith(MESHES):
@@ -187,7 +187,7 @@ class TableOpener:
         return read_as(use, table, self._state)
 
     def _offer(self, use: str) -> None:
-        """Offer the uses of a table in this scene, and choose one if it is there."""
+        """Offer the uses of a table in this scene, and select one if possible."""
         options = dict(USES)
         for name, path in paths_of(self._state.settings).items():
             options[title_of(path)] = name
@@ -207,7 +207,7 @@ class TableOpener:
         return read_as(self.use.value, table, self._state)
 
     def _take(self, read: Callable[[], tuple[Content, str]]) -> Content | None:
-        """Show or run the content of a file; a refusal is a message, and gives None."""
+        """Show or run the content of a file; None and a message for a refusal."""
         content = None
         try:
             content, message = read()
@@ -223,11 +223,11 @@ class TableOpener:
         return content
 
     def _say(self, message: str) -> None:
-        """Show a message on the file beside its button and in the dialog."""
+        """Show a message on the file next to its button and in the dialog."""
         self.message.object = self._understood.object = message
 
     def _on_settings(self, event: Any) -> None:
-        """Take back the message on a file when another scene is chosen."""
+        """Remove the message on a file when another scene is chosen."""
         if event.new.scene != event.old.scene:
             self._say("")
             self._table = None
@@ -247,7 +247,7 @@ class TableOpener:
 
 
 def settings_in(data: bytes, source: str) -> tuple[Settings, str]:
-    """Settings in a file, and a message on them and on what was changed in them."""
+    """Settings in a file, and a message on settings and changes of meaning."""
     settings, changed = read_settings(data, source)
     sentences = [f"{source}: settings of the scene {settings.scene}."]
     definitions = settings.definitions()
@@ -257,7 +257,7 @@ def settings_in(data: bytes, source: str) -> tuple[Settings, str]:
 
 
 def names_of(table: Table) -> list[str]:
-    """Names and units of the columns of a table; numbers for columns without a name."""
+    """Text of the columns of a table: names and units, or numbers without names."""
     names = []
     for number, column in enumerate(table.columns, start=1):
         name = column.name or str(number)

@@ -1,4 +1,4 @@
-"""A dialog of the points of a path: dragged, typed, pasted, or from a table."""
+"""A dialog for the points of a path: dragged, typed, pasted, or from a table."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ MARGINS = {"x": 0.05, "y": 0.2}
 
 
 class CurveDialog:
-    """A dialog of the points of a path; each change runs at once.
+    """A dialog for the points of a path; each change starts a run.
 
     The points are in the units of their columns: in `source`, where they are dragged,
     and as a table in `text`.
@@ -103,7 +103,7 @@ class CurveDialog:
         self._is_updating = False
 
     def _plot(self) -> figure:
-        """The figure in which the points are dragged."""
+        """Make the figure for dragging points."""
         plot = figure(
             height=220, tools="", toolbar_location=None, x_range=(0, 1), y_range=(0, 1)
         )
@@ -114,7 +114,7 @@ class CurveDialog:
         return plot
 
     def _fit(self, x: Array, y: Array) -> None:
-        """Leave room around points, (n,) each, in their units, and title the axes."""
+        """Set limits around points, (n,) each, in their units, and titles of axes."""
         plot = self._figure
         titles = []
         for column, unit in zip(self._columns, self._units, strict=True):
@@ -125,7 +125,7 @@ class CurveDialog:
         _widen(plot.y_range, np.append(y, 0.0), MARGINS["y"])
 
     def _table(self, points: pd.DataFrame) -> str:
-        """Points as CSV, whose head has the units."""
+        """CSV of the points, with units in the head."""
         heads = []
         for title, unit in zip(self._columns, self._units, strict=True):
             if unit.name:
@@ -141,7 +141,7 @@ class CurveDialog:
             self._take(self._table(points), "the plot")
 
     def _take(self, table: str | bytes, source: str) -> None:
-        """Use a table as the path; a refused one stays there to be mended."""
+        """Use a table as the path; a refused table stays in the field."""
         if self._is_updating or table == "":
             return
         settings = self._state.settings
@@ -159,7 +159,7 @@ class CurveDialog:
 
 
 def _widen(axis: Range1d, values: Array, margin: float) -> None:
-    """Set the ends of an axis about values, (n,), with a margin over their range."""
+    """Set the limits of an axis around values, (n,), with a relative margin."""
     low = float(np.min(values))
     high = float(np.max(values))
     room = (high - low or 1.0) * margin

@@ -1,4 +1,4 @@
-"""Tables that a user opens: load paths, measured loops, results of another program."""
+"""Tables opened by a user: load paths, measured loops, results of other programs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Content = Settings | OtherResults | MeasuredLoop
 
 
 def use_on(state: PageState, table: Table) -> str:
-    """Use of a table by its head: a loop, results, or the path of that name."""
+    """Use of a table by its head: a loop, results, or the name of a path."""
     use = use_of(table, axes_on(state))
     if use is Use.PATH:
         return path_of(table, state.settings)
@@ -29,7 +29,7 @@ def use_on(state: PageState, table: Table) -> str:
 
 
 def read_as(use: str, table: Table, state: PageState) -> tuple[Content, str]:
-    """Content of a table as a loop, results or a path, and a message on it."""
+    """Read a table as a loop, results or a path; return content and message."""
     if use == Use.RESULTS:
         results = results_in(table, state.settings)
         return results, f"{table.source}: {results.message}."
@@ -41,7 +41,7 @@ def read_as(use: str, table: Table, state: PageState) -> tuple[Content, str]:
 
 
 def _doubts(loop: MeasuredLoop, state: PageState) -> list[str]:
-    """Warnings where a loop is some thousand times off the run that is shown."""
+    """Warnings if a loop seems thousand times too large or small for the shown run."""
     frame = state.frame
     # Without a run of the same quantities there is nothing to compare with.
     if frame is None or (frame.run.across[1], frame.run.up[1]) != loop.units:
@@ -50,7 +50,7 @@ def _doubts(loop: MeasuredLoop, state: PageState) -> list[str]:
 
 
 def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, str]:
-    """Settings with a table for a path, and a message on it.
+    """Settings with a table for a path, and a message on the table.
 
     A run then lasts until the last of its tables ends.
     """
@@ -70,12 +70,12 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
 
 
 def table_of(data: bytes | str, source: str) -> Table:
-    """The table in a file of any kind."""
+    """Read the table in a file of any format."""
     return read_table(data, source, "the table", "a table of time and value")
 
 
 def renamed(table: Table, heads: str) -> Table:
-    """A table with other names and units of its columns, between commas.
+    """A table with other names and units of columns, separated by commas.
 
     A further name adds a last column, the number of each row from 0.
     """
@@ -89,13 +89,13 @@ def renamed(table: Table, heads: str) -> Table:
 
 
 def paths_of(settings: Settings) -> dict[str, CurveParameter]:
-    """Definitions of the paths over time that do something in the scene, by name."""
+    """Definitions of the paths over time that apply in the scene, by name."""
     definitions = settings.definitions()
     return {name: definitions[name] for name in settings.paths}
 
 
 def path_of(table: Table, settings: Settings) -> str:
-    """Name of the path in the head of a table, else the only one, or the load's."""
+    """Name of the path: from the head of a table, else the only path or the load."""
     paths = paths_of(settings)
     chosen = list(paths.keys() & {column.key for column in table.columns})
     if not chosen:

@@ -1,4 +1,4 @@
-"""Cases of the trade: a gallery of their pictures, and the text beside a case's run."""
+"""Cases of the trade: a gallery of pictures, and the text next to a case's run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from solver.study.trade_case import Case
 
 
 def gallery(begin: Callable[[str], None]) -> pn.FlexBox:
-    """A button with a picture for each case, which begins it."""
+    """A gallery of cases: a button with a picture for each."""
     cards = [
         button(
             case.title,
@@ -35,7 +35,7 @@ def gallery(begin: Callable[[str], None]) -> pn.FlexBox:
 
 
 def texts_of(case: Case, state: PageState) -> list[Callable[[], str]]:
-    """Parts of the text of a case (Markdown), called again with each frame.
+    """Parts of the text of a case (Markdown), updated with each frame.
 
     They are its question, its known value beside that of the run, and the reason of
     that value with its source. Before the last one stands the formula.
@@ -49,7 +49,7 @@ def texts_of(case: Case, state: PageState) -> list[Callable[[], str]]:
 
 
 def formula_of(case: Case) -> Any:
-    """Pane of the formula of a case: typeset, or as it is written."""
+    """Pane of the formula of a case: typeset, or as plain text."""
     if not case.typeset:
         plain = PlainText(margin=0)
         plain.object = case.formula
@@ -62,7 +62,7 @@ def formula_of(case: Case) -> Any:
 
 
 def _known_beside_found(case: Case, state: PageState) -> str:
-    """The known value of a quantity beside that of the run so far (Markdown)."""
+    """Markdown of the known value of a quantity, and of that of the run so far."""
     frame = state.frame
     quantity = case.quantity
     is_known = case.knows(state.settings)
@@ -83,7 +83,7 @@ def _known_beside_found(case: Case, state: PageState) -> str:
 
 
 def _off(ratio: float) -> str:
-    """Distance of a found value from the known one, by their ratio."""
+    """Text of the deviation of a value from the known one, by their ratio."""
     distance = abs(ratio - 1.0)
     if distance > 1.0:
         return "more than 100 %"
@@ -91,13 +91,13 @@ def _off(ratio: float) -> str:
 
 
 def _written(value: float, quantity: Quantity) -> str:
-    """A value with its unit, in four digits; a share in per cent."""
+    """Text of a value with its unit, with four digits; shares in per cent."""
     if quantity.is_share:
         return f"{number(100.0 * value)} %"
     return unit_for(abs(value), quantity.unit)(value, 4)
 
 
 def _raised(text: str) -> str:
-    """Text with raised powers and lowered indices (HTML)."""
+    """HTML of a text with superscripts and subscripts."""
     text = re.sub(r"\^(\d+)", r"<sup>\1</sup>", text.replace("*", "\\*"))
     return re.sub(r"_(\w+)", r"<sub>\1</sub>", text)

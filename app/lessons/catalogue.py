@@ -52,14 +52,14 @@ def settings_of(lesson: Lesson | Case) -> Settings:
 
 
 def plots_of(case: str) -> list[str]:
-    """Names of the plots on top of their cards in a case; empty without a case."""
+    """Names of the plots shown first in a case; empty without a case."""
     if case in CASES:
         return list(CASES[case].views)
     return []
 
 
 def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:
-    """The plots beside a lesson: before the choice those without the answer."""
+    """The plots of a lesson; before the choice those that do not show the answer."""
     names = lesson.beside
     if is_answered:
         names = lesson.views
@@ -74,13 +74,13 @@ def readings_of(lesson: Lesson) -> list[str]:
 
 
 def parts_of(paragraph: str) -> list[str]:
-    """Markdown with `{value:NAME}`, and names of settings with a control, in turn."""
+    """Parts of a paragraph: Markdown, and names of settings with a control, in turn."""
     # A sentence ends with its control: its full stop would stand alone.
     return re.split(r"\{control:(.*?)\}[ .:]*", paragraph)
 
 
 def without_controls(paragraph: str) -> str:
-    """A paragraph without the sentences that ask to move a control, for paper."""
+    """A paragraph without sentences with a control, for paper."""
     sentences = re.split(r"(?<=[.?!]) +", paragraph)
     return " ".join(sentence for sentence in sentences if "{control:" not in sentence)
 

@@ -1,4 +1,4 @@
-"""The choices of a question: buttons, and the predictions of a class beside them."""
+"""The choices of a question: buttons, and the predictions of a class."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ WIDE = {"margin": 0, "sizing_mode": "stretch_width"}
 
 
 class Choices:
-    """The choices of a lesson's question, or a class's counts in its answer, in `view`.
+    """The choices of a lesson's question, or a class's counts in its answer (`view`).
 
     Buttons stay while predictions of others come in: a click on a button that is made
     anew meanwhile is lost. `predict` takes the number of a choice, `open_counts` shows
@@ -65,7 +65,7 @@ class Choices:
         self.show()
 
     def show(self) -> None:
-        """Show the own prediction, and those of a class."""
+        """Show the prediction of the page, and those of a class."""
         is_asked = self._is_asked
         poll = self._state.poll
         leads = poll is not None and poll.leads
@@ -90,7 +90,7 @@ class Choices:
             bar.object = self._bar(number, poll)
 
     def _bar(self, number: int, poll: Poll | None) -> str:
-        """Share of a class that predicted a choice (HTML), empty until all may see it.
+        """HTML bar of the share of a class with a choice; empty until counts are open.
 
         In the answer the choice is named above, as its button is gone.
         """

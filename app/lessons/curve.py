@@ -1,4 +1,4 @@
-"""A figure to draw an expected curve on, before the measured one is shown."""
+"""A figure for drawing an expected curve before the measured one is shown."""
 
 from __future__ import annotations
 

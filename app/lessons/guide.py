@@ -1,4 +1,4 @@
-"""The text beside the plots: a lesson (question, choice, answer) or a case."""
+"""The text next to the plots: a lesson (question, choice, answer) or a case."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ a narrow window the page does."""
 
 
 class Guide:
-    """The lesson or the case that a page is in, if any.
+    """The open lesson or case of a page, if any.
 
     `view` stands beside the plots while one `is_open`, `dialogs` are the lists of all
     lessons and of all cases; `changed` is called when another lesson or case is shown.
@@ -94,7 +94,7 @@ class Guide:
             self._curve.magnify(size)
 
     def open(self, kind: str, name: str) -> None:
-        """Begin a lesson or a case with its settings, in place of another."""
+        """Open a lesson or a case with its settings, and close another one."""
         self.dialogs[kind].open = False
         fade_first(self._state, partial(self._open, kind, name))
 
@@ -119,7 +119,7 @@ class Guide:
         listed.open = True
 
     def update(self) -> None:
-        """Set the quantities in the sentences to those of the frame."""
+        """Update the quantities in the sentences to those of the frame."""
         for pane, text in self._texts:
             pane.object = text()
 
@@ -179,7 +179,7 @@ class Guide:
             self._look(lesson)
 
     def _rise(self) -> None:
-        """Have texts begin at their top from the first one on.
+        """Scroll texts to the top.
 
         Panel looks for callbacks of this kind in all of a page that has one, whenever
         anything new comes to it. The first text comes before the callback does: it is
@@ -191,7 +191,7 @@ class Guide:
             self.view.jscallback(visible=TO_TOP)
 
     def _prepare_curve(self, lesson: Lesson) -> None:
-        """Make a figure to draw on for a question; in its answer reveal the curve."""
+        """Make a figure to draw on for a question; reveal the curve in the answer."""
         is_asked = self._state.is_asked
         if is_asked or self._curve is None or self._curve.lesson is not lesson:
             self._curve = None
@@ -255,7 +255,7 @@ class Guide:
         ]
 
     def _show_counts(self) -> None:
-        """Open the counts, and bring the question into sight."""
+        """Open the counts, and scroll to the question."""
         self._open_counts()
         question = self.view.objects.index(self._choices.view) - 1
         self.view.scroll_to(question)
@@ -279,7 +279,7 @@ class Guide:
         )
 
     def _onward(self, lesson: Lesson) -> list[Any]:
-        """Buttons of the handout and, unless another page leads, of the next lesson."""
+        """Buttons of the handout and, unless a leader decides, of the next lesson."""
         make = partial(handout, self._state, lesson, self._curve)
         on_paper = download("Handout", f"{lesson.name}.html", make, size="small")
         following = dict(pairwise(LESSONS)).get(lesson.name)
@@ -289,7 +289,7 @@ class Guide:
         return [text_button("Next lesson", begin), on_paper]
 
     def _paragraphs(self, paragraphs: tuple[str, ...]) -> list[Any]:
-        """Panes of text, with the control of a setting where it is named."""
+        """Panes of text, with controls of the named settings."""
         panes = []
         for paragraph in paragraphs:
             # Texts and names of settings in turn.
@@ -334,7 +334,7 @@ class Guide:
 
 
 def _titles(begin: Callable[[str], None]) -> pn.FlexBox:
-    """The titles of all lessons by subject, as buttons that begin them."""
+    """The titles of all lessons by subject, as buttons."""
     columns = []
     for subject in SUBJECTS:
         title = "### The method"
@@ -353,7 +353,7 @@ def _titles(begin: Callable[[str], None]) -> pn.FlexBox:
 
 
 def kinds_beside(state: PageState) -> tuple[type[View], ...] | None:
-    """The plots that stand beside the lesson; None without a lesson."""
+    """The plots of the open lesson; None without a lesson."""
     lesson = LESSONS.get(state.lesson)
     if lesson:
         return kinds_of(lesson, is_answered=not state.is_asked)

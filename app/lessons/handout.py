@@ -1,4 +1,4 @@
-"""A lesson on paper: a question with room to write; overleaf its answer with plots."""
+"""A lesson on paper: a question with space to write; overleaf answer and plots."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ HEIGHT = 230
 
 
 def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
-    """A page to print (HTML), of the frame that is shown; it needs no network.
+    """HTML of a page to print, of the shown frame; needs no network.
 
     `curve` was drawn by hand, in a lesson that asks for a curve.
     """

@@ -1,4 +1,4 @@
-"""Drawing of loads, as arrows and words, and of supports, as strokes."""
+"""Drawing of loads, as arrows with labels, and of supports, as strokes."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ RING = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """A load of a setting that was dragged to zero: a handle without an arrow.
+    """A load that was dragged to zero: a handle without an arrow.
 
     The handle is in px from the middle of the bodies' foot, (2,); `per_px` is the value
     of the setting for each px along x and y, (2,).
@@ -152,7 +152,7 @@ class Arrows:
 
     @property
     def spread(self) -> Array:
-        """The line over the tails of a load that is spread along a side, (n, 2).
+        """The line over the tails of a distributed load, (n, 2).
 
         Without points where it is not, or has but two arrows.
         """
@@ -173,7 +173,7 @@ class Arrows:
 
     @property
     def handle(self) -> Array:
-        """The end by which the longest arrow is dragged, shape (2,)."""
+        """The handle: the end of the longest arrow, shape (2,)."""
         return self.handles[self._longest]
 
     def scaled(self, present: float, pointer: Array) -> float:
@@ -187,7 +187,7 @@ class Arrows:
         return present * share
 
     def rest(self, present: float) -> Rest:
-        """The handle that stays once the setting goes from a present value to zero."""
+        """The handle that remains when the setting becomes zero."""
         place = self._places[self._longest] * self._layout.size
         away = self._distance * np.array(self.act.away)
         along = self.handle - self.base[self._longest]
@@ -197,14 +197,14 @@ class Arrows:
 
 
 def _bows(lines: Array, lengths: Array, away: Array) -> Array:
-    """Arrows of a curvature, (n, 2, 2), as bows, (n, 9, 2); lengths (n,), px."""
+    """Bows, (n, 9, 2), for arrows of a curvature, (n, 2, 2), of lengths (n,), px."""
     along = np.linspace(0.0, 1.0, 9)[:, None]
     height = BOW * lengths[:, None, None] * 4.0 * along * (1.0 - along)
     return lines[:, :1] + along * (lines[:, 1:] - lines[:, :1]) + height * away
 
 
 def gapped(lines: Array) -> Array:
-    """Lines, shape (n, k, 2), as one with NaN behind each, shape (n (k + 1), 2)."""
+    """Join lines, shape (n, k, 2), with NaN after each, shape (n (k + 1), 2)."""
     gaps = np.full((len(lines), 1, 2), np.nan)
     return np.concatenate([lines, gaps], axis=1).reshape(-1, 2)
 
@@ -215,7 +215,7 @@ def color_of(act: Act) -> str:
 
 
 def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
-    """Anchor of the words of a load, (2,), px, and the side of the words it is at."""
+    """Anchor of the label of a load, (2,), px, and the side of the label at it."""
     act = arrows.act
     side = act.side
     if side in ("top", "bottom"):
@@ -283,7 +283,7 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
 
 
 def _meets_arrows(act: Act, layout: Layout, right: float) -> bool:
-    """Check whether words of a load that end at the right, px, meet other arrows."""
+    """Check whether a label of a load, up to `right`, px, meets other arrows."""
     side = act.where.partition(" ")[0]
     left = right - layout.letter * (len(act.symbol) + WORD)
     for other in layout.description.acts:
@@ -369,7 +369,7 @@ def ground_edge(layout: Layout, factor: float) -> Array:
 def footing_strokes(
     footing: Footing, points: Array, layout: Layout, factor: float
 ) -> Array:
-    """Strokes of a footing at moved points, (n, 2), px; NaN behind each line."""
+    """Strokes of a footing at moved points, (n, 2), px, with NaN after each line."""
     outward = footing.outward
     if footing.gap is not None:
         # The gap is magnified as displacements are.
@@ -387,7 +387,7 @@ def footing_strokes(
 
 
 def hatched(edge: Array, away: Array) -> Array:
-    """A line, (n, 2), and strokes behind it, with NaN behind each, px, (n_all, 2).
+    """A hatched line, (n, 2), px: line and strokes with NaN after each, (n_all, 2).
 
     `away` points behind the line, (2,), or at each of its points, (n, 2).
     """
@@ -434,7 +434,7 @@ def _rollers(edge: Array, away: Array) -> Array:
 
 
 def _spring(foot: Array, wall: float, away: Array) -> Array:
-    """A coil from a foot, (2,), to a wall at x, px; NaN behind each line, (n, 2)."""
+    """A coil from a foot, (2,), to a wall at x, px; NaN after each line, (n, 2)."""
     y = foot[1] + 12.0
     coils = 6
     x = np.linspace(foot[0] + 8.0 * away[0], wall - 6.0 * away[0], 2 * coils)

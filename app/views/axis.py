@@ -1,4 +1,4 @@
-"""Axes of a figure: units, limits that change seldom, and ticks."""
+"""Axes of a figure: units, stable limits, and ticks."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FLOOR = 1e-15
 
 
 class Axis:
-    """The x or y axis of a figure: a unit for each run, limits that seldom change.
+    """The x or y axis of a figure: a unit for each run, and stable limits.
 
     `title` is without the unit; `unit` is the SI unit of all values that are passed to
     the axis, empty for numbers.
@@ -55,7 +55,7 @@ class Axis:
             self._key = None
 
     def hold(self, key: object, *curves: ArrayLike, margin: float = 0.0) -> None:
-        """Widen the limits to curves in SI; keep values that an equal key had shown.
+        """Extend the limits to curves in SI; limits are reset for another key.
 
         With another key, as of another run, the axis chooses its unit anew. The margin
         is a share of the distance between the limits, and is left free on either side;
@@ -84,7 +84,7 @@ class Axis:
         self.span((low - free) / factor, (high + free) / factor)
 
     def span(self, low: float, high: float) -> None:
-        """Set the limits of the axis in its unit; zooming stays until these change."""
+        """Set the limits of the axis in its unit; a zoom stays until these change."""
         if (low, high) != (self._range.reset_start, self._range.reset_end):
             self._range.update(start=low, end=high, reset_start=low, reset_end=high)
 
@@ -98,13 +98,13 @@ class Axis:
 
 
 def whole(axis: Any) -> None:
-    """Have the ticks of an axis at whole numbers only."""
+    """Set the ticks of an axis to whole numbers only."""
     axis.ticker.update(min_interval=1, num_minor_ticks=0)
     axis.formatter = NumeralTickFormatter(format="0")
 
 
 def edges(middles: Floats) -> Floats:
-    """Ends of cells of equal size about n ascending points, shape (n + 1,)."""
+    """Edges of cells of equal size around n ascending points, shape (n + 1,)."""
     size = float(np.ptp(middles)) / max(len(middles) - 1, 1)
     if size == 0.0:
         size = 1.0
@@ -112,7 +112,7 @@ def edges(middles: Floats) -> Floats:
 
 
 def extent(curves: Iterable[ArrayLike]) -> tuple[float, float]:
-    """Smallest and largest value of curves that are finite throughout, else zeros."""
+    """Smallest and largest value of curves that are entirely finite; else zeros."""
     lows = []
     highs = []
     for curve in curves:
@@ -128,7 +128,7 @@ def extent(curves: Iterable[ArrayLike]) -> tuple[float, float]:
 
 
 def rounded_up(size: float, steps: Iterable[float] = (1.0, 2.0, 5.0, 10.0)) -> float:
-    """A size rounded up to a step times a power of ten; 1 where it is zero."""
+    """A size rounded up to a step times a power of ten; 1 for zero."""
     power = 1.0
     if size > 0.0:
         power = 10.0 ** math.floor(math.log10(size))

@@ -34,7 +34,7 @@ STORED = {"SVD": LATIN, "PGD": DISPLACEMENT, "clips": ERROR}
 
 
 class Spectra(ExtraView):
-    """Singular values, a curve for each substructure; a fast fall means few modes."""
+    """Singular values, a curve for each substructure; fast decay means few modes."""
 
     name = "Singular values"
     needs = frozenset({"spectra"})
@@ -108,7 +108,7 @@ class SpaceModes(ModePlot):
 
 
 class TimeFunctions(ModePlot):
-    """Time functions of the modes over their largest values, which the legend shows."""
+    """Normalised time functions of the modes; the legend shows their largest values."""
 
     name = "Time functions"
 

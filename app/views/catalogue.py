@@ -1,4 +1,4 @@
-"""All views, and which share a card."""
+"""Catalogue of views, by the card that they share."""
 
 from __future__ import annotations
 

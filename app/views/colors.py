@@ -1,4 +1,4 @@
-"""Colours with a meaning; the colour-blind can tell all apart (Okabe and Ito)."""
+"""Colours with a meaning, safe for the colour-blind (Okabe and Ito)."""
 
 from __future__ import annotations
 
@@ -54,5 +54,5 @@ dark."""
 
 
 def scaled(count: int) -> list[str]:
-    """A number of colours, evenly spaced on the scale."""
+    """A number of colours, evenly spaced on the colour scale."""
     return list(interp_palette(SCALE, count))

@@ -1,4 +1,4 @@
-"""Contact forces along an interface, beside the reference and other results."""
+"""Contact forces along an interface, with the reference and other results."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ class ContactForce(View):
     def _scale(
         self, frame: Frame, name: str, fields: InterfaceFields, exact: list[Floats]
     ) -> None:
-        """Set the limits: all that is known, and iterates up to a multiple of it."""
+        """Set the limits: known curves, and iterates up to a multiple of those."""
         run = frame.run
         key = (*frame.stage[:2], name)
         strength = run.interfaces[name].strength
@@ -176,7 +176,7 @@ class ContactForce(View):
         self.y.hold(key, [ROOM * low, ROOM * high], iterate)
 
     def _show_beside(self, frame: Frame, time: float) -> None:
-        """Show another program's friction at its instant nearest to a time, s."""
+        """Show another program's friction at the instant nearest to a time, s."""
         results = (frame.extras.get("beside") or {}).get("brought")
         is_shown = isinstance(results, OtherResults) and results.quantity == FRICTION
         if not is_shown or not len(results.times):
@@ -200,12 +200,12 @@ def _closed_forms(run: Run, name: str, *, has_pressure: bool) -> list[ExactCurve
 
 
 def _curves(positions: Floats, fields: InterfaceFields | None, column: int) -> Floats:
-    """Friction and, if found, pressure as one curve, m and N/m or Pa, (2, n)."""
+    """Friction and, if a result, pressure as one curve, m and N/m or Pa, (2, n)."""
     return joined([(positions, field[:, column]) for field in _given(fields)])
 
 
 def _given(fields: InterfaceFields | None) -> list[Floats]:
-    """Friction and, where it is found, pressure, shape (n_points, n_instants) each."""
+    """Friction and, if a result, pressure, shape (n_points, n_instants) each."""
     if fields is None:
         return []
     if fields.pressure is None:

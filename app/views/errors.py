@@ -1,4 +1,4 @@
-"""Errors of a search: over iterations, beside indicators, and over run time."""
+"""Errors of a search: over iterations, with indicators, and over run time."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ CURVES = {
 
 
 class ErrorPlot(View):
-    """A plot of the run so far, also while an earlier iterate is shown."""
+    """A plot over all iterations so far, also while an earlier iterate is shown."""
 
     def _newest(self, frame: Frame) -> Frame:
         """The newest frame of the run of a frame."""
@@ -160,7 +160,7 @@ class Convergence(ErrorPlot):
         self._show_goal(newest.run.settings.accuracy)
 
     def _scale(self, newest: Frame) -> None:
-        """Have all that is drawn in sight; indicators only from their largest error."""
+        """Set the limits to all errors; indicators only below the largest error."""
         number = newest.run.number
         curves = [self.sources[column].data["y"] for column in CURVES]
         low, _ = extent([SEEN, *curves])
@@ -179,7 +179,7 @@ class Convergence(ErrorPlot):
         self.x.hold((number, has_ended), [0.0, end])
 
     def _show_names(self, newest: Frame) -> None:
-        """Write the names of curves at their ends, one above the other."""
+        """Place the names of curves at their ends, without overlap."""
         names = []
         for column, (title, color, *_) in CURVES.items():
             data = self.sources[column].data
@@ -202,7 +202,7 @@ class Convergence(ErrorPlot):
         )
 
     def _show_goal(self, goal: float) -> None:
-        """Draw the line of the goal, with its name where nothing else is.
+        """Draw the line of the goal, with the name in a free place.
 
         Of free places it takes the one at the right end, above the line.
         """
@@ -263,22 +263,22 @@ class Convergence(ErrorPlot):
 
     @property
     def _last(self) -> float:
-        """The end of the axis of iterations."""
+        """The upper limit of the axis of iterations."""
         return float(self.figure.x_range.reset_end)
 
     @property
     def _ends(self) -> Floats:
-        """Logarithms of the ends of the axis up, shape (2,)."""
+        """Logarithms of the limits of the y axis, shape (2,)."""
         axis = self.figure.y_range
         return np.log10([axis.reset_start, axis.reset_end])
 
     def _heights(self, values: Floats) -> Floats:
-        """Heights over that of the axis, of values, shape (n,) each."""
+        """Heights of values, relative to the axis, shape (n,) each."""
         low, high = self._ends
         return np.asarray((np.log10(values) - low) / (high - low))
 
     def _at(self, heights: Floats) -> Floats:
-        """Values at heights over that of the axis, shape (n,) each."""
+        """Values at heights, relative to the axis, shape (n,) each."""
         low, high = self._ends
         return np.asarray(10.0 ** (low + (high - low) * heights))
 
@@ -322,7 +322,7 @@ def off(line: float, heights: Sequence[float], apart: float) -> Floats:
 
 
 def spread(heights: Sequence[float], apart: float, low: float, high: float) -> Floats:
-    """Ascending heights in a range, moved until they are `apart`, shape (n,).
+    """Ascending heights in a range, moved to distances of `apart`, shape (n,).
 
     Half of that is free below the lowest one.
     """

@@ -1,4 +1,4 @@
-"""Marks in the picture of a first visit: the pull, the friction, and the solver."""
+"""Marks in the picture on a first visit: the pull, the friction, and the solver."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ NONE: Columns = {"x": [], "y": [], "text": [], "text_align": []}
 
 
 def hints_of(picture: Picture) -> Columns:
-    """Columns of the marks on a picture; the load that varies most drives."""
+    """Columns of the marks on a picture; the pull is the load that varies most."""
     layout = picture.layout
     length, top = layout.size * layout.scale
     texts = [SOLVER]

@@ -1,4 +1,4 @@
-"""Words in the picture of a scene: loads, ground, joint, slope, beside what is drawn.
+"""Labels in the picture of a scene: loads, ground, joint, slope.
 
 Anchors of words are px of the figure; the picture's own lines are px from the middle of
 the foot.
@@ -49,7 +49,7 @@ MOST_ROWS = 3
 
 
 def labels_of(picture: Picture) -> tuple[Columns, Columns]:
-    """Columns of all words on a picture, and of lines from words to arrows far away.
+    """Columns of all labels on a picture, and of leader lines to distant arrows.
 
     Words are moved off each other and off arrows.
     """
@@ -73,22 +73,22 @@ def labels_of(picture: Picture) -> tuple[Columns, Columns]:
 
 
 class Obstacles:
-    """Bodies, arrows and handles of a picture, which words leave free."""
+    """Bodies, arrows and handles of a picture, which labels must not cover."""
 
     def __init__(self, picture: Picture) -> None:
         self.layout = picture.layout
         self._picture = picture
 
     def covered_by(self, word: Word) -> bool:
-        """Check whether a word lies on bodies, or on an arrow or its handle."""
+        """Check whether a label covers bodies, an arrow or a handle."""
         return self.has_bodies_below(word) or self.has_arrows_below(word)
 
     def has_bodies_below(self, word: Word) -> bool:
-        """Check whether a word lies on bodies."""
+        """Check whether a label covers bodies."""
         return lies_on(self.layout, word, *self._cells)
 
     def has_arrows_below(self, word: Word) -> bool:
-        """Check whether a word lies on an arrow or its handle."""
+        """Check whether a label covers an arrow or a handle."""
         places = self._shafts
         if lies_on(self.layout, word, places, places):
             return True
@@ -96,7 +96,7 @@ class Obstacles:
         return lies_on(self.layout, word, handles - HANDLE, handles + HANDLE)
 
     def block(self, line: Array, words: Sequence[Word]) -> bool:
-        """Check whether handles or words lie on a line, (n, 2), px."""
+        """Check whether handles or labels lie on a line, (n, 2), px."""
         for word in words:
             low, high = box_of(self.layout, word)
             if np.any(np.all((line > low) & (line < high), axis=1)):
@@ -113,7 +113,7 @@ class Obstacles:
 
     @cached_property
     def _shafts(self) -> Array:
-        """Places along all arrows, and lines over their tails, (n, 2), px."""
+        """Points along all arrows, and along lines over their tails, (n, 2), px."""
         shares = np.linspace(0.0, 1.0, ALONG)[:, None]
         places = [np.zeros((0, 2))]
         for arrows in self._picture.arrows:
@@ -167,7 +167,7 @@ def _word_of_load(picture: Picture, arrows: Arrows, count: int) -> Word:
 
 
 def _is_repeated(act: Act, acts: Sequence[Act]) -> bool:
-    """Check whether a load is a pressure from below that is named above already."""
+    """Check whether a load is a pressure from below that has its label above."""
     if not act.where.startswith("bottom"):
         return False
     above = [other for other in acts if other.where.startswith("top")]
@@ -175,7 +175,7 @@ def _is_repeated(act: Act, acts: Sequence[Act]) -> bool:
 
 
 def _beside(word: Word, line: Array, obstacles: Obstacles) -> Word:
-    """A word beside an upright arrow, (n, 2), px, or below it, if it has room.
+    """A label next to an upright arrow, (n, 2), px, or below, if there is room.
 
     Below an arch, say, there is room at the arrow itself. An arrow on bodies ends
     at the ground, where there is none.
@@ -196,7 +196,7 @@ def _beside(word: Word, line: Array, obstacles: Obstacles) -> Word:
 
 
 def _leaders(picture: Picture, words: Sequence[Word], obstacles: Obstacles) -> Columns:
-    """Lines to the tails of arrows of a weight from its words, which bodies keep away.
+    """Leader lines from labels of a weight to the tails of its distant arrows.
 
     None where the line would lie on other words or arrows.
     """
@@ -238,7 +238,7 @@ def _is_cut(line: Array, others: Sequence[Word], obstacles: Obstacles) -> bool:
 
 
 def _slope(picture: Picture) -> Word:
-    """The angle of bodies that tilt, at the end of the horizontal below their foot."""
+    """Label of the angle of tilted bodies, at the horizontal below their foot."""
     layout = picture.layout
     side = 1.0
     align = "left"
@@ -253,7 +253,7 @@ def _slope(picture: Picture) -> Word:
 
 
 def _name_of_ground(picture: Picture) -> list[Word]:
-    """Name of the ground of a case, if there is one."""
+    """Label of the ground of a case, if any."""
     surroundings = picture.layout.surroundings
     if surroundings is None:
         return []
@@ -267,7 +267,7 @@ def _name_of_ground(picture: Picture) -> list[Word]:
 
 
 def _name_of_joint(picture: Picture, obstacles: Obstacles) -> list[Word]:
-    """Name of the selected joint of bodies of any shape, where it has room.
+    """Label of the selected joint of bodies of any shape, if there is room.
 
     Titles of plots name the joint, too: on bodies it would hide what it names.
     """
@@ -289,7 +289,7 @@ def _name_of_joint(picture: Picture, obstacles: Obstacles) -> list[Word]:
 
 
 def _names_at_ends(picture: Picture, line: Array) -> list[Word]:
-    """The name of a joint beyond each end of its line, (n, 2), px.
+    """Labels of a joint beyond both ends of its line, (n, 2), px.
 
     The end that is nearer to the middle of all bodies comes first.
     """
@@ -327,6 +327,7 @@ def _names_aside(picture: Picture, line: Array) -> list[Word]:
 
 def _apart(picture: Picture, words: Sequence[Word], obstacles: Obstacles) -> list[Word]:
     """Words, moved up, down or aside, off earlier ones and off arrows.
+    """Labels, moved up, down or aside, off earlier ones and off arrows.
 
     They go to the next place that bodies leave free, too, if there is one, and from
     which a line may lead to an arrow that is far.

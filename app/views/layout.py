@@ -161,7 +161,7 @@ class Layout:
         self.motion = motion
 
     def _free(self) -> tuple[Array, Array, Array]:
-        """Corner and size of the place between the margins; size of the figure, (2,).
+        """Corner and size of the area between the margins; size of the figure, (2,).
 
         All are along and across the bodies, px; the corner is the lower one.
         """
@@ -199,7 +199,7 @@ class Layout:
         return room["left"], room["right"], room["bottom"], room["top"]
 
     def _acts_on_bodies(self, act: Act) -> bool:
-        """Check whether a load of all bodies has some where its arrow begins.
+        """Check whether the arrow of a load of all bodies begins on a body.
 
         Below an arch there are none, and its words stand there.
         """
@@ -212,7 +212,7 @@ class Layout:
         return bool(np.any(np.all(is_right_above & is_left_below, axis=-1)))
 
     def _room_of_supports(self) -> Iterator[tuple[str, float]]:
-        """Sides of the bodies, and the room that supports and ground take there, px."""
+        """Space for supports and ground by side of the bodies, px."""
         supports = {"spring": WALL + 16.0, "image": IMAGE, "support": 16.0}
         for hold in self.description.holds:
             size = supports.get(hold.kind, 18.0)
@@ -230,7 +230,7 @@ class Layout:
                 yield "top", GROUND + 16.0
 
     def _room_of_loads(self) -> Iterator[tuple[str, float]]:
-        """Sides of the bodies, and the room that loads and words take there, px."""
+        """Space for loads and labels by side of the bodies, px."""
         is_upright = self.surroundings is not None and self.surroundings.is_upright
         for act, count in zip(self.description.acts, self.equals, strict=True):
             if act.side not in SIDES:
@@ -249,7 +249,7 @@ class Layout:
                 yield act.side, self.arrow + 10.0
 
     def _room_beside(self, act: Act, count: int) -> Iterator[tuple[str, float]]:
-        """Room of a load on the left or right, px, and of its words."""
+        """Space for a load on the left or right, and for its label, px."""
         size = 20.0
         if count != 1:
             # The words of equal loads stand below all bodies.
@@ -264,7 +264,7 @@ class Layout:
         yield act.side, size
 
     def has_room_beside(self, act: Act, places: Array) -> bool:
-        """Check whether the words of a load on top have room beside its arrows.
+        """Check whether the label of a load on top fits next to its arrows.
 
         The arrows stand at places, (n, 2), over the length and height of all bodies.
         """
@@ -280,7 +280,7 @@ class Layout:
         return bool(room > self.letter * (len(act.symbol) + values * WORD))
 
     def is_told_above(self, act: Act, count: int) -> bool:
-        """Check whether words of a load stand in a row above all else.
+        """Check whether the label of a load is in a row above the picture.
 
         `count` is the number of loads equal to it, itself included.
         """
@@ -291,7 +291,7 @@ class Layout:
         return np.asarray((positions - self.size * [0.5, 0.0]) * self.scale)
 
     def fitting(self, largest: Array, factor: float | None) -> float:
-        """Factor on displacements: the present one while motion is seen and has room.
+        """Factor on displacements: unchanged while motion is visible and fits.
 
         `largest` is the largest displacement over all instants along x and y, (2,), m.
         """
@@ -306,7 +306,7 @@ class Layout:
 
 
 def shape_of(geometry: Geometry) -> str:
-    """Shape of a picture, which says where plots stand: high, broad or long.
+    """Shape of a picture: high, broad or long; plots are arranged by it.
 
     A high picture has more room beside plots than above them; a broad one needs as much
     height as they do, a long one less.
@@ -330,7 +330,7 @@ def turned(points: Array, angle: float) -> Array:
 
 
 def is_at_left(places: Array) -> bool:
-    """Check whether words of a load at places, (n, 2), stand at their left."""
+    """Check whether the label of a load at `places`, (n, 2), is on the left."""
     return float(np.mean(places[:, 0])) < 0.45
 
 
@@ -350,7 +350,7 @@ def is_opposite(act: Act, other: Act) -> bool:
 
 
 def is_equal(act: Act, other: Act) -> bool:
-    """Check whether loads of bodies of any shape are alike, but for their direction."""
+    """Check whether loads of bodies of any shape are equal except for direction."""
     if act.outward is None or other.outward is None:
         return False
     if act.symbol != other.symbol or act.unit != other.unit:
@@ -361,7 +361,7 @@ def is_equal(act: Act, other: Act) -> bool:
 
 
 def counts_of_equals(acts: Sequence[Act]) -> list[int]:
-    """Number of loads equal to each load; 0 where an earlier one has their words."""
+    """Number of loads equal to each load; 0 if an earlier one has the label."""
     counts: list[int] = []
     for act in acts:
         firsts = [n for n, count in enumerate(counts) if count]
@@ -381,7 +381,7 @@ def layout_of(
     height: float,
     surroundings: Surroundings | None = None,
 ) -> Layout:
-    """The layout with larger bodies in a figure in px.
+    """The layout, with labels in rows or not, that shows bodies larger.
 
     Keys stand below or at the left, words beside the bodies or, if these become much
     larger, in rows above. Bare bodies have a single key, below them.

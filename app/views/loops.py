@@ -93,7 +93,7 @@ class HysteresisLoop(View):
 
 
 def _ghost_of(run: Run, ghost: Frame | None) -> Floats:
-    """Loop of another run, (2, n), if it has the quantities of a run, else nothing."""
+    """Loop of another run with the same quantities, (2, n); else empty."""
     if ghost is None or (ghost.run.across, ghost.run.up) != (run.across, run.up):
         return NOTHING
     return ghost.loop
@@ -130,7 +130,7 @@ class CyclePlot(ExtraView):
     )
 
     def _add_legend(self) -> None:
-        """Add a legend: first cycle, last cycle, and a text on how slip goes on."""
+        """Add a legend: first cycle, last cycle, and a text on further slip."""
         self.mark({"first": SCALE[0], "last": SCALE[-1], "text": UNSEEN})
         self.legend(first="cycle 1", last="last", text="text")
 
@@ -176,7 +176,7 @@ class Cycles(CyclePlot):
 
 
 class CycleEnergy(CyclePlot):
-    """Energy that friction takes in every cycle."""
+    """Energy dissipated by friction in every cycle."""
 
     name = "Energy a cycle"
 
@@ -203,7 +203,7 @@ class CycleEnergy(CyclePlot):
 
 
 class SlipPlane(View):
-    """Slips of two points, and the lines between which both stick."""
+    """Slips of two points, and the limits within which both stick."""
 
     name = "Slip plane"
     needs = frozenset({"slips"})
@@ -234,7 +234,7 @@ class SlipPlane(View):
         )
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the slips of both points so far, and the present limits of slip."""
+        """Show the slips of both points so far, and the present limits."""
         slips = frame.extras.get("slips", {})
         column = frame.run.column(selection.phase)
         # None means that slip says nothing of pressure; {} that the worker has sent
@@ -261,7 +261,7 @@ class SlipPlane(View):
 
 
 def _lines(matrix: Floats, limit: Floats, far: float) -> Floats:
-    """Lines A w = b as one curve broken by NaN, shape (2, n), m.
+    """Lines A w = b as one curve with NaN in between, shape (2, n), m.
 
     A has shape (n_lines, 2), N/m, b (n_lines,), N. Each line goes a length `far`, m, to
     both sides of its point nearest to the origin.

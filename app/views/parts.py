@@ -31,7 +31,7 @@ def bare(
     up: tuple[float, float],
     **more: Any,
 ) -> figure:
-    """A figure without tools, frame and grid, with a least height, px, and limits."""
+    """A figure without tools, frame and grid, with a minimum height, px, and limits."""
     plot = figure(
         sizing_mode="stretch_both",
         min_height=min_height,
@@ -54,7 +54,7 @@ def bare(
 
 
 def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
-    """A bar at the right of a figure that explains its colours, as `explain` says."""
+    """A colour bar at the right of a figure; `explain` sets its colours."""
     bar = ColorBar(
         color_mapper=colors.clone(),
         width=9,
@@ -71,7 +71,7 @@ def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
 
 
 def explain(bar: ColorBar, colors: LinearColorMapper, title: str | None = None) -> None:
-    """Have a colour bar explain colours whose limits may have changed, by a title.
+    """Set colours, limits and title of a colour bar.
 
     A bar is laid out anew for another mapper alone: with other limits or another title
     its values would be cut, and its title would lie on the plot.
@@ -103,7 +103,7 @@ def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def laid_out_alone(plot: LayoutDOM) -> pn.pane.Bokeh:
-    """A pane with a figure that is laid out by itself, and takes all the room.
+    """A pane with a figure that is laid out separately, and fills its container.
 
     Bokeh lays out all that has a common root whenever one part asks for it, as each
     widget does that is new, and each figure whose labels become longer. A `Pane` ends
@@ -120,7 +120,7 @@ def laid_out_alone(plot: LayoutDOM) -> pn.pane.Bokeh:
 
 @contextmanager
 def come_last(panes: Sequence[pn.pane.Bokeh], document: Any) -> Iterator[None]:
-    """Have figures that are laid out alone come to a page after what comes meanwhile.
+    """Add separately laid out figures to a page after other changes.
 
     All goes in one message. Panel goes through all models of what is new several times,
     and most of these are the figures'.

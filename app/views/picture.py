@@ -1,4 +1,4 @@
-"""A picture of the scene without its words, as columns of sources of its figure, px."""
+"""A picture of the scene without labels, as columns of its figure's sources, px."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ class Picture:
 
     @property
     def draggable(self) -> list[Arrows | Rest]:
-        """The arrows whose load is a setting, and handles of those that are zero."""
+        """The arrows whose load is a setting, and handles of zero loads."""
         draggable: list[Arrows | Rest] = list(self._rests)
         for arrows in self.arrows:
             if arrows.setting and len(arrows.handles):
@@ -127,7 +127,7 @@ class Picture:
 
     @property
     def is_of_any_shape(self) -> bool:
-        """Check whether bodies have any shape, and not straight sides alone."""
+        """Check whether bodies have any shape, not only straight sides."""
         return self.description.footings is not None
 
     @property
@@ -158,7 +158,7 @@ class Picture:
         return self.many(np.stack(patches))
 
     def _image(self, bodies: Array) -> Array:
-        """The bodies turned by half a turn, if a support is such an image.
+        """The bodies turned by 180 degrees, if the support is their image.
 
         Both are outlines with NaN behind each, shape (n, 2), px.
         """
@@ -169,7 +169,7 @@ class Picture:
         return np.stack([-bodies[:, 0], y], axis=1)
 
     def _strokes(self) -> Strokes:
-        """All lines, the last on top; bare bodies have no bands of their interfaces."""
+        """All lines, the last on top; bare bodies have no bands of interfaces."""
         rims = _drawn(self._geometry.rims, self.nodes)
         strokes: Strokes = [(rims, EDGE, 1.4), (self._holds(), EDGE, 1.3)]
         if not self.layout.is_bare:
@@ -200,7 +200,7 @@ class Picture:
         return self._line(_drawn(geometry.rims, nodes))
 
     def mechanism(self, moved: Array) -> Columns:
-        """Outline of bodies that go on to collapse, by a motion of nodes, (n, 2), m.
+        """Outline of collapsing bodies, by a motion of nodes, (n, 2), m.
 
         It begins where the bodies are drawn, so that what is held stays there.
         """
@@ -254,7 +254,7 @@ class Picture:
         return np.flatnonzero(is_there & (row == body)).reshape(-1, 2)
 
     def _columns(self, strokes: Strokes) -> Columns:
-        """Columns of strokes on the page: binary arrays go fast to the browser."""
+        """Columns of strokes on the page, as binary arrays, which are sent fast."""
         columns: Columns = {"xs": [], "ys": [], "line_color": [], "line_width": []}
         for line, color, width in strokes:
             x, y = self.page(line).T.astype(np.float32)

@@ -1,4 +1,4 @@
-"""The structure taken apart: its pieces, and the forces on both sides of joints."""
+"""The structure in pieces, with the forces on both sides of joints."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ SIDES = "below", "above"
 
 
 class PiecesView(ExtraView):
-    """Each piece where its own displacement puts it, with the forces on its sides.
+    """Each piece at its own displacement, with the forces on its sides.
 
     A tap selects the nearest joint.
     """
@@ -178,7 +178,7 @@ class PiecesView(ExtraView):
         return above
 
     def _write(self, sentence: str, note: str) -> None:
-        """Write a sentence into its lines beside the pieces, and a note if it fits."""
+        """Write a sentence next to the pieces, and a note if there is room."""
         # A factor stays beside its sign.
         text = f"{sentence} {note}".replace("× ", "×\N{NO-BREAK SPACE}")
         lines = textwrap.wrap(text, self._letters)
@@ -220,7 +220,7 @@ class PiecesView(ExtraView):
         self._line("selected", gapped(ends))
 
     def _scale(self, extra: Pieces, frame: Frame) -> None:
-        """Choose scales anew where those of the run's other frames do not do."""
+        """Update the scales, if those of earlier frames of the run do not fit."""
         if self._scene != frame.run.settings.scene:
             self._scales = {}
             self._chosen = set[str]()
@@ -242,7 +242,7 @@ class PiecesView(ExtraView):
                 self._chosen.add(name)
 
     def _note(self, extra: Pieces) -> str:
-        """Scales of displacements, gaps and arrows, and a word on what is left out."""
+        """Text on scales of displacements, gaps and arrows, and on omissions."""
         placed = self._placed
         force = self._scales["force"]
         texts = [f"Displacement × {number(placed.factor(self._scales), 2)}"]
@@ -431,7 +431,7 @@ def _boxes(corners: Array, parts: Indices) -> tuple[Array, Array]:
 
 
 def _arrows(tails: Array, spans: Array, longest: float) -> tuple[Array, Array]:
-    """Lines, (n, 2), with NaN between them, and heads, (n, 3, 2), of arrows, px.
+    """Lines, (n, 2), with NaN in between, and heads, (n, 3, 2), of arrows, px.
 
     An arrow that is shorter than it can be seen has its least length.
     """
@@ -458,7 +458,7 @@ def _open_gap(stage: StageFields) -> float:
 
 
 def _sentence(extra: Pieces, stage: StageFields, column: int, name: str) -> str:
-    """Sentence on what fits at the selected instant, and what does not."""
+    """Sentence on which pieces fit at the selected instant, and which do not."""
     totals = stage.forces.sum(axis=1)
     largest = float(np.hypot(totals[:, 0], totals[:, 1]).max(initial=0.0))
     size = np.zeros((len(extra.names), 2))

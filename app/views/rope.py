@@ -111,7 +111,7 @@ class WireSection(ExtraView):
 
 
 class AxialForces(ExtraView):
-    """Force along a rod, a band or each wire, which regains it from a break on."""
+    """Force along a rod, a band or each wire."""
 
     name = "Axial force"
     needs = frozenset({"axial force"})
@@ -131,7 +131,7 @@ class AxialForces(ExtraView):
         hover(plot, self._lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
 
     def _show(self, axial: Any, frame: Frame, selection: Selection) -> None:
-        """Show the force in each wire, and in a broken one in a colour of its own."""
+        """Show the force in each wire, and in a broken one in another colour."""
         run = frame.run
         column = run.column(selection.phase)
         x = axial["x"]

@@ -204,7 +204,7 @@ class Scene(View):
         self._show_keys(frame, layout, selection.stage)
 
     def lay_out(self, width: float, height: float) -> None:
-        """Lay the picture out for a size of the figure, px."""
+        """Lay out the picture for a size of the figure, px."""
         self._size = {"inner_width": width, "inner_height": height}
 
     def _layout_of(self, frame: Frame) -> Layout:
@@ -218,7 +218,7 @@ class Scene(View):
         )
 
     def _scale(self, frame: Frame, layout: Layout) -> None:
-        """Choose the magnification and the scale of arrows for a frame that is new."""
+        """Choose the magnification and the scale of arrows for a new frame."""
         shown = None
         if self._shown is not None:
             shown = self._shown[0]
@@ -232,12 +232,12 @@ class Scene(View):
             self._scale_arrows(frame)
 
     def _magnification(self, frame: Frame, layout: Layout) -> float:
-        """Factor on displacements with which a frame has room in the figure."""
+        """Factor on displacements for which a frame fits into the figure."""
         largest = np.nanmax(np.abs(frame.deformed.nodes), axis=(0, 2), initial=0.0)
         return layout.fitting(largest, self._factor)
 
     def _rests(self, run: Run) -> list[Rest]:
-        """Handles of the loads that were drawn, and are zero in a run."""
+        """Handles of loads that were drawn before, and are zero in a run."""
         settings = run.settings
         places = settings.load_settings().values()
         rests = []
@@ -265,7 +265,7 @@ class Scene(View):
         self._keys.css_classes = arrangement
 
     def _scale_arrows(self, frame: Frame) -> None:
-        """Keep the scale of arrows while they stay long enough and fit, or are held."""
+        """Keep the scale of arrows while they fit and are seen, or are dragged."""
         shortest, longest = KEPT
         for act in frame.run.geometry.description.acts:
             peak = float(np.abs(act.values).max())
@@ -282,7 +282,7 @@ class Scene(View):
                 self.update(*self._shown)
 
     def _hold(self, event: Any) -> None:
-        """Take hold of the arrow whose handle is under the pointer."""
+        """Begin to drag the arrow whose handle is under the pointer."""
         picture = self.picture
         if picture is None or not picture.draggable:
             return
@@ -301,7 +301,7 @@ class Scene(View):
             self.state.drag(self._held[0].setting, self._moved_to)
 
     def _let_go(self, event: Any) -> None:
-        """Release the arrow at the value of its last move.
+        """Release the arrow at its last value.
 
         The event itself has no place where the browser has broken off a touch.
         """
@@ -311,7 +311,7 @@ class Scene(View):
             self.state.release(name, self._moved_to)
 
     def _value(self, event: Any) -> float:
-        """Value of the held load at the pointer, within the range of its slider."""
+        """Value of the dragged load at the pointer, within the range of its slider."""
         arrows, picture = self._held
         present = float(getattr(picture.frame.run.settings, arrows.setting))
         dragged = arrows.scaled(present, picture.to_local(event.x, event.y))
@@ -321,7 +321,7 @@ class Scene(View):
         return float(f"{clipped:.3g}")
 
     def _select(self, event: Any) -> None:
-        """Select the substructure nearest to a tap, and an interface that is close."""
+        """Select the substructure nearest to a tap, and a near interface."""
         picture = self.picture
         if picture is None:
             return
@@ -339,7 +339,7 @@ class Scene(View):
 
 
 class ExtraScene(Scene):
-    """The scene without loads and interfaces, but with an extra if the frame has it."""
+    """The scene without loads and interfaces, with an extra if the frame has it."""
 
     is_bare = True
 

@@ -30,7 +30,7 @@ class StatusMap(View):
     applies = staticmethod(lambda settings: settings.instants > 1)
 
     def make(self) -> None:
-        """Draw the image of the status, with marks of what is selected."""
+        """Draw the image of the status, with marks of the selection."""
         plot = self.begin(("x", "m"), ("t", "s"))
         plot.center = []
         self.mark(KEYS)
@@ -81,7 +81,7 @@ class StatusMap(View):
     def _show_image(
         self, run: Run, interface: FrictionInterface, fields: InterfaceFields
     ) -> None:
-        """Show the status as an image whose cells lie about points and instants."""
+        """Show the status as an image with cells around points and instants."""
         # The first and the last cell stand out by half a cell.
         left, right = self.x(edges(interface.positions)[[0, -1]])
         low, high = self.y(edges(run.instants)[[0, -1]])

@@ -29,7 +29,7 @@ and 1, and their names above that line."""
 
 
 class Timeline(View):
-    """Load paths over time, each over its largest value, and the selected instant."""
+    """Load paths over time, relative to their largest values, and the instant."""
 
     name = "Load path"
 
@@ -105,7 +105,7 @@ class Timeline(View):
 
 
 def paths_of(run: Run) -> list[tuple[str, Array]]:
-    """Title with range, and values, (n_instants,), of all paths, constant ones last."""
+    """Title with range, and values, (n_instants,), of all paths; constant ones last."""
     description = run.geometry.description
     changing = []
     constant = []

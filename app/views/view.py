@@ -1,4 +1,4 @@
-"""Views: a Bokeh figure that is made once, and an update of it from a frame."""
+"""Views: a Bokeh figure that is made once, and updated from frames."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ while it waits: what it draws has no place on the screen before."""
 
 
 class View:
-    """A figure, made when it is first seen, below a legend of its curves.
+    """A view: a figure, made when first visible, below a legend of its curves.
 
     A second figure may stand `beside` it.
 
@@ -145,11 +145,11 @@ class View:
 
     @property
     def layout(self) -> Any:
-        """The figure as a card has it: alone, or laid out with another beside it."""
+        """The figure for a card: alone, or laid out with another one."""
         return self.figure
 
     def hold(self, is_held: bool) -> None:
-        """Have the figures wait with all painting, or paint what they show."""
+        """Hold back all painting of the figures, or resume it."""
         self.is_held = is_held
         for plot in (self._figure, self.beside):
             if plot is not None:
@@ -192,11 +192,11 @@ class View:
 
     @property
     def ghost_name(self) -> str:
-        """Name of the run that is drawn beside the present one."""
+        """Name of the run that is compared with the present one."""
         return "last run" if self.state.pinned is None else "pinned run"
 
     def add_flag(self) -> None:
-        """Add the mark of the known number of a case; `show_flag` puts it there."""
+        """Add the mark of the known number of a case, which `show_flag` places."""
         self.add("level", "HSpan", "y", color=FLAG, line_dash="dashed", line_width=1.5)
         look = {"marker": "inverted_triangle", "size": 12, "color": FLAG}
         self.add("flag", "Scatter", "x y", **look)
@@ -287,7 +287,7 @@ class View:
         on: str = "",
         **look: Any,
     ) -> GlyphRenderer:
-        """Add a glyph of Bokeh's, by a name under which `fill` and `legend` know it.
+        """Add a glyph of Bokeh, with a name for `fill` and `legend`.
 
         `columns` are the columns of its source, called as properties of the glyph;
         `also` are further ones, for tips or other glyphs. The source is called as the
@@ -337,7 +337,7 @@ class View:
             self._items[name] = LegendItem(renderers=[marks], index=index)
 
     def legend(self, *names: str, place: str = "above", **titles: str) -> Legend:
-        """Name glyphs in a legend, in this order, by their own names or by titles.
+        """Name glyphs in a legend, in this order, by their names or by titles.
 
         The legend shows copies of them without data, as Bokeh makes it anew whenever
         the data of a glyph in it change.
@@ -379,7 +379,7 @@ class View:
                 item.label = value(wanted)
 
     def fill(self, name: str, title: str = "", **columns: Any) -> None:
-        """Fill a source; show its entry in the legend, by a title, if it has data."""
+        """Fill a source; show its entry in the legend, with a title, if it has data."""
         target = self.sources[name]
         columns = {column: _sent(values) for column, values in columns.items()}
         new = [
@@ -409,7 +409,7 @@ class View:
         ys: Sequence[ArrayLike],
         titles: Sequence[str],
     ) -> None:
-        """Draw curves over one x, shape (n,), in SI; empty names without a curve."""
+        """Draw curves over one x, shape (n,), in SI; clear names without a curve."""
         for name, y, title in zip_longest(names, ys, titles):
             if y is None:
                 self.draw(name, [], [])
@@ -418,7 +418,7 @@ class View:
 
 
 class ExtraView(View):
-    """A view of one extra, which the worker sends once the view is in sight."""
+    """A view of one extra, which the worker sends when the view is visible."""
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the extra of a frame, if the frame has it."""
@@ -437,7 +437,7 @@ def _within(axis: Range1d, share: float) -> float:
 
 
 def _sent(values: Any) -> Any:
-    """Values with short curves as lists: an array is sent in two further messages."""
+    """Values with short curves as lists, as arrays need two further messages."""
     if isinstance(values, list):
         return [_sent(each) for each in values]
     is_curve = isinstance(values, np.ndarray) and values.ndim == 1
@@ -447,7 +447,7 @@ def _sent(values: Any) -> Any:
 
 
 def _equal(old: Any, new: Any) -> bool:
-    """Check whether values are equal; NaN equals NaN."""
+    """Check whether values are equal, with NaN equal to NaN."""
     if isinstance(new, np.ndarray):
         return np.array_equal(old, new, equal_nan=new.dtype.kind == "f")
     if isinstance(new, list):
@@ -456,7 +456,7 @@ def _equal(old: Any, new: Any) -> bool:
 
 
 def joined(curves: Iterable[ArrayLike]) -> Floats:
-    """Curves, shape (2, n) each, as one with NaN between them, shape (2, n_all)."""
+    """Join curves, shape (2, n) each, with NaN in between, shape (2, n_all)."""
     gap = np.full((2, 1), np.nan)
     pieces: list[Floats] = []
     for curve in curves:
@@ -494,7 +494,7 @@ def magnify(plot: figure, size: str, words: str) -> None:
 
 
 def legend(plot: figure, items: Sequence[Any], place: str = "above") -> Legend:
-    """A legend in one line: above the plot, where it covers no curve, or inside."""
+    """A legend in one line: above the plot, or inside."""
     styles = {"font-size": TEXT}
     sheets = [CLOSE, FLOWING]
     if place == "above":

@@ -1,4 +1,4 @@
-"""A word in the figure of the scene: its box, and places that it may move to."""
+"""A label in the figure of the scene: its box, and positions to move to."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LEFT_OF = {"left": 0.0, "center": 0.5, "right": 1.0}
 
 
 class Word(NamedTuple):
-    """A text in the figure: its anchor, (2,), px, the side it is at, and a colour."""
+    """A label in the figure: text, anchor, (2,), px, side at the anchor, colour."""
 
     text: str
     anchor: Array
@@ -27,7 +27,7 @@ class Word(NamedTuple):
 
 
 def inside(layout: Layout, words: Sequence[Word]) -> list[Word]:
-    """Words, moved so that no text is cut."""
+    """Labels, moved so that no text is cut off."""
     inside = []
     edge = half_of_line(layout)
     for word in words:
@@ -40,17 +40,17 @@ def inside(layout: Layout, words: Sequence[Word]) -> list[Word]:
 
 
 def half_of_line(layout: Layout) -> float:
-    """Half of the height of letters, px."""
+    """Half of the height of a line, px."""
     return 0.5 * LINE * layout.row
 
 
 def width_of(layout: Layout, word: Word) -> float:
-    """Width of a word, about, px."""
+    """Estimated width of a label, px."""
     return layout.letter * len(word.text) + 4.0
 
 
 def box_of(layout: Layout, word: Word) -> tuple[Array, Array]:
-    """Lower left and upper right corner of a word, (2,) each, px."""
+    """Lower left and upper right corner of a label, (2,) each, px."""
     width = width_of(layout, word)
     size = np.array([width, 2.0 * half_of_line(layout)])
     low = word.anchor - size * [LEFT_OF[word.align], 0.5]
@@ -58,20 +58,20 @@ def box_of(layout: Layout, word: Word) -> tuple[Array, Array]:
 
 
 def lies_on(layout: Layout, word: Word, low: Array, high: Array) -> bool:
-    """Check whether a word lies on boxes between corners, shape (n, 2) each, px."""
+    """Check whether a label meets boxes between corners, shape (n, 2) each, px."""
     first, last = box_of(layout, word)
     return bool(np.any(np.all((low < last) & (high > first), axis=1)))
 
 
 def meets(layout: Layout, word: Word, others: Sequence[Word]) -> bool:
-    """Check whether a word lies on one of others."""
+    """Check whether a label meets any of others."""
     boxes = [box_of(layout, other) for other in others]
     low, high = np.reshape(boxes, (-1, 2, 2)).swapaxes(0, 1)
     return lies_on(layout, word, low, high)
 
 
 def in_rows(layout: Layout, word: Word, most: int) -> list[Word]:
-    """A word moved up or down by up to a number of rows, inside the figure.
+    """Copies of a label moved up or down by up to `most` rows, inside the figure.
 
     Of two places equally far away the one farther from the middle comes first.
     """
@@ -87,7 +87,7 @@ def in_rows(layout: Layout, word: Word, most: int) -> list[Word]:
 
 
 def around(layout: Layout, word: Word, most: int) -> list[Word]:
-    """A word moved by up to a number of rows, and then also aside by its own width."""
+    """Copies of a label moved by up to `most` rows, then also aside by its width."""
     level = in_rows(layout, word, most)
     width = width_of(layout, word)
     aside = []
@@ -99,7 +99,7 @@ def around(layout: Layout, word: Word, most: int) -> list[Word]:
 
 
 def is_inside(layout: Layout, word: Word) -> bool:
-    """Check whether a word lies inside the figure."""
+    """Check whether a label lies inside the figure."""
     low, high = box_of(layout, word)
     size = [layout.width, layout.height]
     return bool(np.all(low >= 0.0) and np.all(high <= size))

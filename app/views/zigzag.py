@@ -1,4 +1,4 @@
-"""The way of a point between its friction law and balance, beside the whole field."""
+"""The path of a point between friction law and equilibrium; the whole field."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ MARKERS = {LOCAL: "circle", LINEAR: "square"}
 
 
 class Zigzag(ExtraView):
-    """The way of a point at the selected instant: slip along x, friction along y.
+    """The path of a point at the selected instant: slip along x, friction along y.
 
     The local stage puts it on the graph of the friction law, along a line of slope k;
     the linear stage puts it in balance, along one of slope -k. Where the coarse problem
@@ -55,7 +55,7 @@ class Zigzag(ExtraView):
     needs = frozenset({"zigzag"})
 
     def make(self) -> None:
-        """Draw the way of the point, and the field beside it."""
+        """Draw the path of the point, and the field next to it."""
         self.beside = self._make_field()
         plot = self.begin(
             ("slip", "m"), ("friction force", "N/m"), y_range=self.beside.y_range
@@ -104,18 +104,18 @@ class Zigzag(ExtraView):
 
     @property
     def layout(self) -> GridBox:
-        """The way of the point, and the field beside it."""
+        """The path of the point, and the field next to it."""
         self.figure  # noqa: B018  # both are made when it is first asked for
         return self._grid
 
     def _magnify(self, plot: figure) -> None:
-        """Set the type size of a figure, with as many ticks as have room."""
+        """Set the type size of a figure, and as many ticks as fit."""
         super()._magnify(plot)
         ticks = TICKS if self._type == TEXT else FEW_TICKS
         plot.xaxis.ticker.desired_num_ticks = ticks
 
     def _make_field(self) -> figure:
-        """The figure of all points, whose axis up is that of the way."""
+        """Make the figure of all points, with the y axis of the path."""
         plot = self.begin(("x", "m"), ("friction force", "N/m"))
         plot.yaxis.visible = False
         plot.xaxis.ticker.desired_num_ticks = TICKS
@@ -142,7 +142,7 @@ class Zigzag(ExtraView):
         self._show_field(extra, selection.stage, column)
 
     def _scale(self, frame: Frame, extra: Any, way: _Way, column: int) -> None:
-        """Set the limits: law and solution, and iterates up to a multiple of them."""
+        """Set the limits: law and solution, and iterates up to a multiple of these."""
         run = frame.run
         self.y.rename("friction force", "N/m")
         if run.settings.kind == "plane":
@@ -168,7 +168,7 @@ class Zigzag(ExtraView):
         self.across.hold(key[:2], extra["x"])
 
     def _show_law(self, extra: Any, way: _Way, column: int) -> None:
-        """Show bounds, the graph of the law, the solution, and the line of balance."""
+        """Show bounds, graph of the law, solution, and line of equilibrium."""
         bound = float(extra["bound"][column])
         slider = float(extra["slider"][column])
         width, height = self._spans()
@@ -196,7 +196,7 @@ class Zigzag(ExtraView):
         self.draw("line", *line)
 
     def _spans(self) -> tuple[float, float]:
-        """Lengths of lines without end, in SI."""
+        """Lengths of unbounded lines, in SI."""
         spans = []
         for axis, limits in (
             (self.x, self.figure.x_range),
@@ -206,7 +206,7 @@ class Zigzag(ExtraView):
         return spans[0], spans[1]
 
     def _show_way(self, way: _Way) -> None:
-        """Show the iterates of both stages, and the ways between them."""
+        """Show the iterates of both stages, and the steps between them."""
         for stage, points in way.stages.items():
             alpha = np.linspace(FAINTEST, 1.0, len(points))
             self.fill(
@@ -235,7 +235,7 @@ class Zigzag(ExtraView):
         )
 
     def _show_field(self, extra: Any, stage: str, column: int) -> None:
-        """Show the field of either stage, as far as it has come, and mark the point."""
+        """Show the field of each stage, if already computed, and mark the point."""
         x = extra["x"]
         local, linear = extra["fields"][:, :, column]
         self._along("local field", x, local)
@@ -284,7 +284,7 @@ class _Way:
         self.stage = stage
 
     def segments(self) -> list[tuple[str, Array, Array]]:
-        """Ways along k, and others: name, both ends, (n, 2, 2), and opacity, (n,)."""
+        """Steps along k, and others: name, both ends, (n, 2, 2), and opacity, (n,)."""
         local = self.stages[LOCAL]
         linear = self.stages[LINEAR]
         opacity = np.linspace(FAINTEST, 1.0, len(local))

@@ -1,4 +1,4 @@
-"""Cells, outlines and rims of bodies as they are drawn, from their meshes.
+"""Cells, outlines and rims of bodies for drawing, from their meshes.
 
 Grids of rectangles are thinned line by line, other meshes by groups of elements.
 """
@@ -32,12 +32,12 @@ NONE = -1
 
 
 def floats(values: NDArray[np.generic]) -> Floats:
-    """Arrays as frames have them, of the same shape."""
+    """Arrays as float32, of the same shape."""
     return values.astype(np.float32, order="C")
 
 
 def thinned(size: int, limit: int) -> Indices:
-    """Indices of a thinned axis, (n,), first and last included, n up to a limit."""
+    """Indices of a thinned axis, (n,), with first and last; n is at most the limit."""
     if size <= limit:
         return np.arange(size)
     return np.unique(np.linspace(0, size - 1, limit).round().astype(np.intp))
@@ -45,7 +45,7 @@ def thinned(size: int, limit: int) -> Indices:
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """Some elements of a substructure as they are drawn.
+    """Drawing of some elements of a substructure.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class Drawing:
 
 
 def drawings_of_grids(inside: Inside) -> list[Drawing]:
-    """Drawings of rectangular substructures, with some lines of their grids."""
+    """Drawings of rectangular substructures, with a subset of their grid lines."""
     # All grids are thinned alike, so that bodies of one size look alike.
     limit = max(MOST_CELLS // len(inside.grids), 1)
     shapes = np.array([np.subtract(grid.shape, 1) for grid in inside.grids])
@@ -112,7 +112,7 @@ def drawings_of_shapes(structure: Bodies, inside: Inside) -> list[Drawing]:
 
 
 def mesh_of(grids: Sequence[Array], parts: ArrayLike) -> dict[str, Any]:
-    """Nodes, cells and outlines, as `Geometry` has them, of grids of nodes.
+    """Nodes, cells and outlines of `Geometry` from grids of nodes.
 
     Each grid is of one of the parts, (n_rows, n_columns, 2), m, row by row from below.
     """
@@ -124,7 +124,7 @@ def mesh_of(grids: Sequence[Array], parts: ArrayLike) -> dict[str, Any]:
 
 
 def joined(drawings: Sequence[Drawing]) -> dict[str, Any]:
-    """Nodes, cells and outlines of drawings, as `Geometry` has them."""
+    """Nodes, cells and outlines of `Geometry` from drawings."""
     widest = max(drawing.cells.shape[1] for drawing in drawings)
     cells = []
     rings = []
@@ -159,7 +159,7 @@ def cells_of(drawings: Sequence[Drawing]) -> Indices:
 
 
 def ring_of(grid: Indices) -> Indices:
-    """Numbers around a grid, (n_rows, n_columns), the first again at the end, (n,)."""
+    """Closed ring of the outer nodes of a grid, (n_rows, n_columns): (n,)."""
     sides = (grid[0], grid[1:, -1], grid[-1, -2::-1], grid[-2::-1, 0])
     return np.concatenate(sides)
 
@@ -181,7 +181,7 @@ def _drawn_grid(
 
 
 def _kept_lines(grid: Indices, share: float, limit: int) -> tuple[Indices, Indices]:
-    """Rows and columns of a grid of nodes that are drawn, (n_up,) and (n_across,).
+    """Drawn rows and columns of a grid of nodes, (n_up,) and (n_across,).
 
     They are a share of all lines, and make no more cells than a limit.
     """
@@ -192,7 +192,7 @@ def _kept_lines(grid: Indices, share: float, limit: int) -> tuple[Indices, Indic
 
 
 def _quads_of(grid: Indices, up: Indices, across: Indices) -> Indices:
-    """Quadrilateral of kept rows and columns about each element, (n_elements,)."""
+    """Index of the drawn quadrilateral that contains each element, (n_elements,)."""
     n_rows, n_columns = np.subtract(grid.shape, 1)
     row = np.searchsorted(up, np.arange(n_rows), side="right") - 1
     column = np.searchsorted(across, np.arange(n_columns), side="right") - 1
@@ -200,7 +200,7 @@ def _quads_of(grid: Indices, up: Indices, across: Indices) -> Indices:
 
 
 def _sides_in_contact(structure: Bodies) -> Array:
-    """Normals into the bodies at nodes with a contact, (n_nodes, 2), elsewhere 0."""
+    """Normals into the bodies at nodes with contact, (n_nodes, 2); else 0."""
     normals = np.zeros((structure.first_nodes[-1], 2))
     for joint in structure.joints:
         for (body, nodes), sign in zip(joint.sides, (1.0, -1.0), strict=False):
@@ -216,7 +216,7 @@ def _bands(
     thickness: float,
     sides: Array,
 ) -> list[Drawing]:
-    """Bands of a line of beams, (n_elements, 4), in about `count` cells.
+    """Drawing of a line of beams, (n_elements, 4), as bands of about `count` cells.
 
     A band lies on what it touches, by `sides`, (n_nodes, 2), else about its line. The
     line of a substructure may be in several stretches, as turns round a drum are.
@@ -240,7 +240,7 @@ def _bands(
 
 
 def _as_meshed(part: int, nodes: Array, elements: Indices) -> Drawing:
-    """Drawing of elements, (n_elements, 4), one by one."""
+    """Drawing of elements, (n_elements, 4), with a cell for each."""
     numbers, cells = np.unique(elements, return_inverse=True)
     cells = cells.reshape(elements.shape)
     return Drawing(
@@ -256,7 +256,7 @@ def _as_meshed(part: int, nodes: Array, elements: Indices) -> Drawing:
 def _grouped(
     part: int, nodes: Array, elements: Indices, count: int, step: float
 ) -> Drawing:
-    """Drawing of elements, (n_elements, 4), in a number of groups.
+    """Drawing of elements, (n_elements, 4), with cells of grouped elements.
 
     Of the nodes on borders stay those at which groups meet, corners of the outline, and
     one in each step along it, m.
@@ -287,7 +287,7 @@ def _grouped(
 
 
 def _meeting(sides: Indices, owners: Indices, around: Indices) -> Flags:
-    """Check at which nodes more than two groups meet, (n_nodes,).
+    """Mask of nodes at which more than two groups meet, (n_nodes,).
 
     `sides` are those of the borders of groups, (n, 2), by their `owners`, (n,), and
     `around` those of the outline, (n, 2), beyond which is one more.
@@ -300,7 +300,7 @@ def _meeting(sides: Indices, owners: Indices, around: Indices) -> Flags:
 
 
 def _polygons(borders: Sequence[Sequence[Indices]], is_kept: Flags) -> Indices:
-    """Nodes that are kept round each group, (n_groups, n_corners), the last repeated.
+    """Kept nodes around each group, (n_groups, n_corners), padded with the last one.
 
     Round a hole, or a group in several pieces, there are several closed lines, one
     after the other: there and back between them there is no area.
@@ -320,7 +320,7 @@ def _polygons(borders: Sequence[Sequence[Indices]], is_kept: Flags) -> Indices:
 
 
 def _border(elements: Indices, labels: Indices) -> tuple[Indices, Indices]:
-    """Sides of elements, (n_elements, 4), beyond which is another label or nothing.
+    """Sides of elements, (n_elements, 4), next to another label or to nothing.
 
     Returns
     -------
@@ -341,7 +341,7 @@ def _border(elements: Indices, labels: Indices) -> tuple[Indices, Indices]:
 
 
 def _closed_lines(sides: Indices) -> list[Indices]:
-    """Closed lines of directed sides, (n, 2), the first node again at the end."""
+    """Closed lines from directed sides, (n, 2); the last node repeats the first."""
     ahead = dict[int, list[int]]()
     for begin, end in sides.tolist():
         ahead.setdefault(begin, []).append(end)
@@ -357,14 +357,14 @@ def _closed_lines(sides: Indices) -> list[Indices]:
 
 
 def _begins(line: Array, step: float) -> Flags:
-    """Check where steps along a closed line, (n + 1, 2), m, begin, (n,)."""
+    """Mask of the starts of steps along a closed line, (n + 1, 2), m: (n,)."""
     lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
     steps = np.floor((np.cumsum(lengths) - lengths) / step)
     return np.diff(steps, prepend=-1.0) > 0.0
 
 
 def _is_corner(line: Array) -> Flags:
-    """Check where a closed line, (n + 1, 2), m, has corners, (n,)."""
+    """Mask of the corners of a closed line, (n + 1, 2), m: (n,)."""
     along = np.diff(line, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     turns = np.einsum("na,na->n", along, np.roll(along, 1, axis=0))
@@ -372,7 +372,7 @@ def _is_corner(line: Array) -> Flags:
 
 
 def _is_free(sides: Indices, nodes: Array) -> Flags:
-    """Check which sides, (n_sides, 2), of outlines no other outline has, (n_sides,).
+    """Mask of sides, (n_sides, 2), that belong to a single outline, (n_sides,).
 
     A shared side runs the other way round in the other one; outlines share positions,
     not nodes, (n_nodes, 2), m.

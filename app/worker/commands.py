@@ -1,4 +1,4 @@
-"""Process of a report: runs a command of the command line in a folder."""
+"""Process of a report: runs a command in a folder."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LOG = "log.txt"
 
 
 def command(arguments: Sequence[str], folder: Path) -> int:
-    """Run a command with its output in the folder's log; end if the server is gone."""
+    """Run a command with a log in the folder; end if the server has ended."""
     from solver.commands.cli import main
 
     # A process does one command and ends.

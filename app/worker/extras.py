@@ -1,4 +1,4 @@
-"""Extras: quantities of an iterate that only some views need."""
+"""Extras: data of an iterate that only some views need."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Sampled:
 
 
 def spectra(sampled: Sampled, iterate: Iterate, needs: Needs) -> list[Floats]:
-    """Singular values of the friction force in substructures over the largest of all.
+    """Singular values of the friction force by substructure, over the largest.
 
     Each array has shape (n_values,), without unit.
     """
@@ -80,7 +80,7 @@ def spectra(sampled: Sampled, iterate: Iterate, needs: Needs) -> list[Floats]:
 
 
 def slips(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Floats] | None:
-    """Slips of two points, and the lines A w = b between which both stick.
+    """Slips of two points, and the limits A w = b of sticking.
 
     "slip" of both, (2, n_instants), m; "matrix" A, (4, 2), N/m, and "limit" b, (4,
     n_instants), N, whose first and third lines are those of the left point; "room", the
@@ -198,7 +198,7 @@ def modes(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
 
 
 def _signed_size(space: Array) -> Array:
-    """Largest entry of every mode, with the sign of its last large lobe, (n_modes,).
+    """Signed size of every mode, (n_modes,): largest entry, sign of its last lobe.
 
     Modes have shape (n_modes, n_points). The sign of the largest entry itself would
     flip whenever two lobes change places.
@@ -210,7 +210,7 @@ def _signed_size(space: Array) -> Array:
 
 
 def clips(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
-    """Size of the friction stored as singular vectors, as PGD modes, and as clips.
+    """Sizes of friction stored as singular vectors, as PGD modes, and as clips.
 
     "table", the number of its values; "branches", the number of branches of the load;
     and for each of "SVD", "PGD" (None without bases) and "clips" the count of stored
@@ -237,7 +237,7 @@ def _pairs(sizes: Sizes) -> Floats:
 
 
 def beside(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
-    """Measured loop or results of another program, and the iterate's distance to them.
+    """Measured loop or results of another program, and the iterate's distance.
 
     "brought" is the loop or the results; "distance" is relative, NaN where both share
     too few rows. The result is None where nothing was brought, or it is of another
@@ -267,7 +267,7 @@ def _comparison(brought: OtherResults, sampled: Sampled, interface: str) -> Comp
 
 
 def tension(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
-    """Tension along a band on a guide, as the axial force of a rod; None of others.
+    """Tension along a band on a guide, as axial force; None for other structures.
 
     "x" of places, (n_places,), m along the guide; "force", (1, n_places, n_instants),
     N; "names"; "stuck" has no curve, (0, n_instants). At both ends stand the tensions

@@ -44,7 +44,7 @@ Extras = dict[str, Callable[[Iterate, Needs], Any]]
 
 
 class Drawn:
-    """Bodies as they are drawn at some instants, and their contact points.
+    """Drawn bodies at some instants, and their contact points.
 
     The mesh is as of `mesh_of`; positions are those of all degrees of freedom, (n_dofs,
     2), m.
@@ -80,7 +80,7 @@ class Drawn:
         )
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
-        """Displacements of nodes and points, and the status, at the shown instants."""
+        """Displacements of nodes and points, and status, at the shown instants."""
         status = iterate.status[np.ix_(self._points, self._columns)]
         return DeformedGeometry(*self._moved(iterate), status)
 
@@ -111,7 +111,7 @@ class DrawnRods(Drawn):
         super().__init__(problem, description, columns, mesh, positions)
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
-        """Axial force, as rods have no height."""
+        """Axial force as stress, as rods have no height."""
         return "axial force", "N", floats(self._forces(iterate)[self._elements])
 
     def _axial_force(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
@@ -150,7 +150,7 @@ class DrawnRods(Drawn):
         return self._force(iterate.displacement[:, self._columns])
 
     def _moved(self, iterate: Iterate) -> tuple[Floats, Floats]:
-        """Displacements of nodes and points, which move along the rods."""
+        """Displacements of nodes and points along the rods."""
         moved = iterate.problem.absolute(iterate.displacement)[:, self._columns]
         vectors = np.stack([moved, np.zeros_like(moved)], axis=1)
         return floats(vectors[self._along]), floats(vectors[self._dofs])
@@ -159,7 +159,7 @@ class DrawnRods(Drawn):
 def _rectangles(
     problem: Problem, description: Description
 ) -> tuple[list[Array], list[Indices], list[Indices]]:
-    """Rectangles of the substructures of rods, which stand above each other.
+    """Rectangles of the substructures of rods, one rod above the other.
 
     Returns
     -------
@@ -187,7 +187,7 @@ def _rectangles(
 
 
 class DrawnMesh(Drawn):
-    """Plane bodies, with some lines or groups of the elements of each substructure."""
+    """Plane bodies, drawn by some lines or groups of the elements of substructures."""
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         inside = problem.inside
@@ -226,7 +226,7 @@ class DrawnMesh(Drawn):
         return "von Mises stress", "Pa", floats(np.stack(means, axis=1))
 
     def nodes_of(self, displacement: Array) -> Floats:
-        """Displacement of nodes, (n_nodes, 2), m, from that of all, (n_dofs,), m."""
+        """Displacement of drawn nodes, (n_nodes, 2), m, from that of all dofs."""
         moved = self._inside.displacement(displacement[:, None], [0])
         # Given displacements are added to all, and are no part of a motion.
         still = self._inside.displacement(np.zeros((len(displacement), 1)), [0])
@@ -238,7 +238,7 @@ class DrawnMesh(Drawn):
         return moved[:, :, self._columns]
 
     def _moved(self, iterate: Iterate) -> tuple[Floats, Floats]:
-        """Displacements of nodes and points, whatever frames the nodes have."""
+        """Displacements of nodes and points in global axes."""
         moved = self._inside_moved(iterate)
         points = moved[self._inside.nodes_of_dofs[self._dofs]]
         return floats(moved[self._nodes]), floats(points)

@@ -1,4 +1,4 @@
-"""The worker process: takes orders of its page, and works at the run between them."""
+"""The worker process: takes orders of its page, and runs iterations in between."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ HEARTBEAT = 2.0
 
 
 def main(connection: Connection) -> None:
-    """Take orders until the server, or the page, is gone."""
+    """Process orders until the server or the page has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # The status of a run says that it diverges: NumPy need not warn of it, too.
     np.seterr(over="ignore", invalid="ignore", divide="ignore")
@@ -39,7 +39,7 @@ def main(connection: Connection) -> None:
 
 
 class WorkerLoop:
-    """A worker at work: it takes orders, works at one run, and sends reports.
+    """Loop of a worker: processes orders, advances one run, sends reports.
 
     It waits for orders without end while there is no run, or nobody sees the run.
     Between pieces of work it takes all orders that have come. A frame is sent when the
@@ -61,7 +61,7 @@ class WorkerLoop:
         threading.Thread(target=self._beat, daemon=True).start()
 
     def serve(self) -> None:
-        """Take orders, and work between them, without end."""
+        """Process orders, and work in between, endlessly."""
         while True:
             # Orders may have come while the last piece of work lasted.
             timeout: float | None = 0.0
@@ -74,7 +74,7 @@ class WorkerLoop:
                 self._guard(self._work, self._runner)
 
     def _work(self, runner: Runner) -> None:
-        """Do the next piece of work if it is due, and send a frame if it is wanted."""
+        """Do the next piece of work if due, and send a frame if requested."""
         if self._asked is not None:
             earlier = runner.earlier(self._asked, self._needs)
             self._asked = None
@@ -90,7 +90,7 @@ class WorkerLoop:
             self._send(messages.NewFrame(runner.frame(self._needs)))
 
     def _rest(self) -> float | None:
-        """Time to wait for an order, s; None: without end."""
+        """Time to wait for an order, s; None: unlimited."""
         runner = self._runner
         if runner is None or self._is_unseen:
             return None
@@ -100,11 +100,11 @@ class WorkerLoop:
 
     @property
     def _is_unseen(self) -> bool:
-        """Check whether the page has shown no picture for long, as in a hidden tab."""
+        """Check whether the page, as a hidden tab, has painted no picture for long."""
         return not self._is_ready and time.monotonic() > self._shown_at + UNSEEN
 
     def _obey(self, order: Order) -> None:
-        """Do as an order says; without a run only a new one, and the needs, count."""
+        """Carry out an order; without a run only orders of a run and of needs count."""
         runner = self._runner
         match order:
             case Start():
@@ -124,7 +124,7 @@ class WorkerLoop:
                 self._asked = iteration
 
     def _begin(self, start: Start) -> None:
-        """Take up a run; ask first if it takes long or much memory."""
+        """Begin a run; ask first if it needs much time or memory."""
         # At once, as the supervisor ends a worker that does not take up a run in time.
         self._send(messages.Began(start.number))
         self._number = start.number
@@ -144,7 +144,7 @@ class WorkerLoop:
             self._runner = runner
 
     def _guard(self, action: Callable[[Any], None], argument: Any) -> None:
-        """Call an action; an error in it is reported, and ends the run."""
+        """Call an action; report an error, which ends the run."""
         try:
             action(argument)
         except (RefusedError, FloatingPointError) as problem:
@@ -168,12 +168,12 @@ class WorkerLoop:
         return any(isinstance(order, Start) for order in self._orders)
 
     def _is_halted(self) -> bool:
-        """Check whether another run is ordered, or this one is to wait."""
+        """Check whether another run is ordered, or this one has to pause."""
         self._receive(0.0)
         return any(isinstance(order, Start) or order == PAUSE for order in self._orders)
 
     def _receive(self, timeout: float | None) -> None:
-        """Take the orders that have come; of several runs only the last counts."""
+        """Receive the orders that have arrived; of several runs the last counts."""
         while self._connection.poll(timeout):
             order = self._connection.recv()
             if isinstance(order, Start):
@@ -191,7 +191,7 @@ class WorkerLoop:
             self._connection.send(report)
 
     def _beat(self) -> None:
-        """Send signs of life, also while a long piece of work lasts."""
+        """Send signs of life, also during a long piece of work."""
         with contextlib.suppress(OSError):
             while True:
                 self._send(messages.Alive())

@@ -1,4 +1,4 @@
-"""Outlines of the pieces of a structure: their corners, and how these move."""
+"""Outlines of the pieces of a structure: corners and their displacements."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MOST_CORNERS = 600
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """Outline of a piece: its corners, (n, 2), m, and how they move.
+    """Outline of a piece: corners, (n, 2), m, and maps to their displacements.
 
     `motion` is the map from the rows of the piece, (2 n, n_boundary), and `given` what
     is added, (2 n, n_instants), scaled, or None.

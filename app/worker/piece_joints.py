@@ -1,4 +1,4 @@
-"""Joints between the pieces of a structure, and the forces on their sides."""
+"""Joints between the pieces of a structure, and forces on their sides."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ which a side that is called tall is taller than wide."""
 
 
 class SidePairs(NamedTuple):
-    """Rows that face each other, and the number of their interface, (n_pairs,) each.
+    """Opposite rows, and index of their interface, (n_pairs,) each.
 
     The number is `NONE` at cuts, and so is the row below on a support.
     """
@@ -34,7 +34,7 @@ class SidePairs(NamedTuple):
     numbers: Indices
 
     def joints(self, owners: Indices) -> tuple[SidePairs, Indices, Indices]:
-        """Pairs at shown joints; what tells these apart, (n_joints, 3); joint of each.
+        """Pairs at shown joints; keys of joints, (n_joints, 3); joint of each pair.
 
         `owners` are the pieces of all rows, `NONE` where they are not shown, and `NONE`
         behind the last, (n_rows + 1,).
@@ -49,7 +49,7 @@ class SidePairs(NamedTuple):
 
 
 class PieceJoints:
-    """Sides of the joints between some pieces, and forces on them.
+    """Sides of the joints between some pieces, and forces on the sides.
 
     `joints`, `is_above`, `owners`, `quarters`, `is_straight`, `points` and `sides` are
     as in `Pieces`.
@@ -87,7 +87,7 @@ class PieceJoints:
     def _gather(
         self, pairs: SidePairs, of_pairs: Indices, kept: Indices, turns: Flags
     ) -> None:
-        """Number the sides of the joints that are kept, and collect their rows.
+        """Number the sides of the kept joints, and collect their rows.
 
         `of_pairs` are the joints of the pairs, (n_pairs,). Rows of a turn, (n_rows,),
         have no force.
@@ -103,7 +103,7 @@ class PieceJoints:
         self.is_above = each % 2
 
     def _measure(self) -> None:
-        """Find quarter points, and the place of each row along its side, -1 to 1.
+        """Find quarter points, and the position of each row along its side, -1 to 1.
 
         The place is the one on the chord from end to end of the side.
         """
@@ -124,7 +124,7 @@ class PieceJoints:
         self._components = self._components_along(chords)
 
     def _components_along(self, chords: Array) -> Indices:
-        """Component of each row, (n_rows,), 0 nearly along its chord and 1 across.
+        """Component of each row, (n_rows,): 0 along its chord, 1 across.
 
         Of both rows at a node one is of either. Chords have the shape (n_rows, 2), m.
         """
@@ -156,7 +156,7 @@ class PieceJoints:
         return self._positions[order[firsts]], self._positions[order[lasts]]
 
     def _macro(self) -> sparse.csr_array:
-        """Map to macro forces at quarter points, (4 n_sides, n_rows), as of a lever."""
+        """Map to macro forces at quarter points, (4 n_sides, n_rows), by lever arms."""
         shares = np.stack([0.5 - self._along, 0.5 + self._along], axis=1)
         # Of every row to both quarter points, along x and y.
         values = shares[:, :, None] * self._directions[:, None]
@@ -168,7 +168,7 @@ class PieceJoints:
         return macro
 
     def _micro(self, name: str) -> tuple[Array, Indices, sparse.csr_array]:
-        """Points with micro forces, (n_points, 2), m, their sides, and a map to these.
+        """Points with micro forces, (n_points, 2), m, their sides, and the map to them.
 
         The macro force is spread as a traction that is linear along the side.
         """
@@ -192,14 +192,14 @@ class PieceJoints:
         return points, keys[:, 0].astype(np.intp), micro
 
     def _within(self, groups: list[Indices]) -> sparse.coo_array:
-        """Map from forces of rows to their micro part, group by group."""
+        """Map from forces of rows to micro forces, group by group."""
         blocks = [sparse.coo_array((0, 0))]
         for group in groups:
             blocks.append(sparse.coo_array(_without_macro(self._along[group])))
         return sparse.block_diag(blocks, format="coo")
 
     def _groups(self, name: str) -> list[Indices]:
-        """Rows of each side and component with micro forces, in order along it."""
+        """Rows of each side and component with micro forces, ordered along the side."""
         is_chosen = np.ones(len(self.names), dtype=bool)
         if len(self.names) > MOST_DETAILED:
             is_chosen = np.array(self.names) == name

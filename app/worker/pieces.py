@@ -1,4 +1,4 @@
-"""The structure taken apart: its pieces, and the force on each side of its joints.
+"""The structure in pieces, with the force on each side of the joints.
 
 A joint is where two substructures meet, or one and its support: a cut, or a part of an
 interface with friction. In LATIN each of its sides has displacements and forces of its
@@ -60,7 +60,7 @@ class StageFields:
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Pieces of a structure, and the sides of the joints between them."""
+    """Pieces of a structure, and sides of the joints between the pieces."""
 
     corners: Floats
     """Corners of the outlines, (n_corners, 2), m, NaN behind each outline."""
@@ -98,7 +98,7 @@ class Pieces:
 
 
 class Cutter:
-    """A structure that is taken apart, iterate by iterate."""
+    """A structure in pieces, iterate by iterate."""
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         self._problem = problem
@@ -111,7 +111,7 @@ class Cutter:
         self._made: tuple[str, _Apart] | None = None
 
     def pieces(self, iterate: Iterate, needs: Needs) -> Pieces:
-        """Pieces of an iterate, and the forces on them, in both stages.
+        """Pieces of an iterate, and forces on the pieces, in both stages.
 
         Of many rods those beside the selected interface are shown.
         """
@@ -147,7 +147,7 @@ class Cutter:
 
 
 class _Apart:
-    """Some pieces and their joints, with the maps from the fields of an iterate."""
+    """Some pieces and their joints, with maps from the fields of an iterate."""
 
     def __init__(
         self,
@@ -231,7 +231,7 @@ class _Apart:
         return floats(self._gapped(moved))
 
     def _stacked(self, outlines: list[Outline]) -> Array:
-        """Given displacement of all corners, (2 n_corners, n_instants), scaled."""
+        """Prescribed displacement of all corners, (2 n_corners, n_instants), scaled."""
         stacked = []
         for outline in outlines:
             if outline.given is None:

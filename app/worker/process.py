@@ -1,4 +1,4 @@
-"""The worker process of a page, from the side of the server."""
+"""The worker process of a page, as the server sees it."""
 
 from __future__ import annotations
 
@@ -62,11 +62,11 @@ class Worker:
 
     @property
     def hangs(self) -> bool:
-        """Check whether the process has given no sign of life for long."""
+        """Check whether the process has given no sign of life for a long time."""
         return time.monotonic() - self._heard > SILENT
 
     def send(self, order: Order) -> None:
-        """Send an order, which a process that has ended ignores.
+        """Send an order; orders to an ended process are lost.
 
         A process takes none while a long piece of work lasts, and once its pipe is full
         who writes into it waits: not the server, which all pages share.
@@ -74,7 +74,7 @@ class Worker:
         self._orders.put(order)
 
     def give_way(self, others: int) -> None:
-        """Be as nice as a process beside others is, or nicer if it is so already."""
+        """Lower the priority of the process in favour of others."""
         # Without a right of its own a process becomes no less nice again.
         wanted = min(niceness() + NICENESS + others, NICEST)
         if not self._process.is_alive():
@@ -84,7 +84,7 @@ class Worker:
                 os.setpriority(os.PRIO_PROCESS, self._process.pid, wanted)
 
     def end(self) -> None:
-        """End the process at once; its later reports are dropped."""
+        """End the process immediately; later reports are dropped."""
         self._running.discard(self)
         self._hear = None
         self._orders.put(None)
@@ -93,7 +93,7 @@ class Worker:
         self._connection.close()
 
     def _speak(self) -> None:
-        """Write orders into the pipe, until the process is to end."""
+        """Write orders into the pipe, until the process has to end."""
         # A pipe that is closed has no handle: also a TypeError.
         with contextlib.suppress(OSError, TypeError):
             while (order := self._orders.get()) is not None:

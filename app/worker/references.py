@@ -1,4 +1,4 @@
-"""Solutions that a process keeps: references, and the states of the last answer."""
+"""Caches of a process: references, and the states of the last answer."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ OF_THE_SEARCH = {"start", "finish"}
 
 @dataclass(frozen=True, eq=False)
 class LastAnswer:
-    """The certified solution of a run, from whose states a similar run may start.
+    """The states of a certified solution, as start of a similar run.
 
     Attributes
     ----------
@@ -43,11 +43,11 @@ class LastAnswer:
 
     @classmethod
     def of(cls, order: Start, solution: Reference) -> LastAnswer:
-        """Keep the states of a solution, and not its problem."""
+        """Store the states of a solution, without its problem."""
         return cls(order, states_of_solution(solution))
 
     def start_of(self, order: Start, needs: Needs) -> States | None:
-        """States from which an ordered run starts; None where it starts from nothing.
+        """States as start of an ordered run; None to start from zero.
 
         A run that a changed method, a step or a reading asks for is there to be seen
         from its own start, and so is one that is begun anew.
@@ -76,7 +76,7 @@ def has_reference(settings: Settings) -> bool:
 
 
 class ReferenceCache:
-    """The references last used, without their problems: matrices take most memory."""
+    """Cache of recently used references, without problems, which take most memory."""
 
     def __init__(self) -> None:
         self._kept: OrderedDict[bytes, Reference] = OrderedDict()
@@ -84,7 +84,7 @@ class ReferenceCache:
     def of(
         self, settings: Settings, problem: Problem, stop: Callable[[], bool]
     ) -> Reference | None:
-        """Reference of a problem, with a collapse if it has one; None without any.
+        """Reference of a problem, and its collapse if any; None without a reference.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""A run in the worker process: pieces of work, when they are due, and frames."""
+"""A run in the worker process: pieces of work, their timing, and frames."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ LATE = 0.1
 
 
 class Pacing:
-    """The pace of a run, as in `Start`, and the steps that were asked for."""
+    """The pace of a run, as in `Start`, and the requested steps."""
 
     def __init__(self, pace: float, steps: int = 0) -> None:
         self._pace = pace
@@ -56,25 +56,25 @@ class Pacing:
         self._due = time.monotonic()
 
     def change(self, pace: float) -> None:
-        """Go on at another pace."""
+        """Set another pace."""
         self._pace = pace
         self._steps = 0
         self._due = min(self._due, time.monotonic() + self._interval())
 
     def step(self) -> None:
-        """Do one more iteration, and wait."""
+        """Allow one more iteration, then pause."""
         self._pace = 0.0
         self._steps += 1
 
     def count(self, number: int) -> None:
-        """Count the iteration that was done."""
+        """Count a finished iteration."""
         self._done = number
         self._steps = max(self._steps - 1, 0)
         # From the time when this iteration was due, so that delays do not add up.
         self._due = max(self._due, time.monotonic() - LATE) + self._interval()
 
     def rest(self) -> float | None:
-        """Time until the next iteration is due, s; None: not before an order."""
+        """Time until the next iteration is due, s; None: not without an order."""
         if self._steps:
             return 0.0
         if self._pace == 0.0:
@@ -91,7 +91,7 @@ class Pacing:
 
 
 class Runner:
-    """A run: its first iteration, the reference, then iterations as they are due.
+    """A run: first iteration, reference, then iterations when due.
 
     `interrupted` says that an order waits that ends the run, and `halted` that one is
     there that ends or halts it: a status step is then given up until the run goes on.
@@ -152,16 +152,16 @@ class Runner:
 
     @property
     def hurries(self) -> bool:
-        """Check whether the run goes on before it is shown."""
+        """Check whether the run continues before it is shown."""
         return self.status is None and time.monotonic() < self._hurries_until
 
     @property
     def is_presentable(self) -> bool:
-        """Check whether there is something new to show."""
+        """Check whether there is a new iterate to show."""
         return self.has_news and self.iterate is not None and not self.hurries
 
     def rest(self, is_seen: bool = True) -> float | None:
-        """Time until the next piece of work, s; None: before an order there is none."""
+        """Time until the next piece of work, s; None: not without an order."""
         if self.iterate is None or self.hurries:
             return 0.0
         if self._is_to_compare(is_seen):
@@ -171,7 +171,7 @@ class Runner:
         return self.pacing.rest()
 
     def advance(self, is_seen: bool = True) -> None:
-        """Do one piece of work: an iteration, or after the first one the reference."""
+        """Do a piece of work: an iteration, or, after the first one, the reference."""
         if self._before is not None:
             self._start_near(self._before)
         elif self._is_to_compare(is_seen):
@@ -180,7 +180,7 @@ class Runner:
             self._iterate()
 
     def _is_to_compare(self, is_seen: bool) -> bool:
-        """Check whether the reference is due, once the last picture is seen or not."""
+        """Check whether the reference is due; `is_seen`: the picture is painted."""
         if self.iterate is None or self._is_compared or self.hurries:
             return False
         # That of a run that follows a slider waits until its picture is seen: the
@@ -194,7 +194,7 @@ class Runner:
         return replace(frame, is_followed=self._is_near)
 
     def earlier(self, iteration: int, needs: Needs) -> Frame | None:
-        """Frame of an earlier iteration as it was; None where it is not kept."""
+        """Frame of an earlier iteration; None if that is not stored."""
         iterate = self._kept.get(iteration)
         if iterate is None:
             return None
@@ -202,7 +202,7 @@ class Runner:
         return self.sampler.frame(iterate, history, None, needs)
 
     def _keep(self, iterate: Iterate) -> None:
-        """Keep an iterate of the search, to be shown again."""
+        """Store an iterate of the search, to be shown again."""
         # Without the fields that are computed from it, as large as its own.
         self._kept[iterate.number] = replace(iterate)
         # An iterate has four fields of this size.
@@ -212,7 +212,7 @@ class Runner:
                 del self._kept[number]
 
     def _start_near(self, before: States) -> None:
-        """Seek the answer from the states of another run, once."""
+        """Try to find the answer from the states of another run, once."""
         self._before = None
         began = time.perf_counter()
         near = neighbour(
@@ -225,7 +225,7 @@ class Runner:
             self._take(*near)
 
     def _iterate(self) -> None:
-        """Do an iteration, and record it unless it diverged."""
+        """Do an iteration, and record the iterate unless it diverged."""
         if self._iterates is None:
             self._iterates = judged(
                 self.sampler.problem,
@@ -254,7 +254,7 @@ class Runner:
                 self._certificate = decision.certificate
 
     def _compare(self) -> None:
-        """Find the reference, and the errors of the iterate recorded before it."""
+        """Find the reference, and the errors of the iterate before."""
         problem = self.sampler.problem
         # The certified solution of a run that follows a slider is its reference: the
         # incremental solver would find it once more, while the slider moves on.
@@ -279,7 +279,7 @@ class Runner:
                 self.status = collapses(problem, reference.collapse)
 
     def _complete(self, reference: Reference | None, distance: Distance | None) -> None:
-        """Compare the run with a reference, by the distance to it, or with none."""
+        """Complete the run with a reference and the distance to it, or without."""
         self._is_compared = self.has_news = True
         self.sampler.complete(reference)
         self._distance = distance

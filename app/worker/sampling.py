@@ -1,4 +1,4 @@
-"""The sampler, which makes the frames of the page from iterates."""
+"""The sampler, which makes frames for the page from iterates."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ SCALARS = tuple(f.name for f in fields(Record) if f.name not in NO_SCALARS)
 
 
 def shown_instants(settings: Settings, count: int) -> Indices:
-    """Instants of a run that are shown, in order, (n,), of `count` in all.
+    """Shown instants of a run, ascending, (n,), of `count` in all.
 
     They are evenly thinned, and those at which a load turns back or is largest, as key
     figures are the largest of what is shown.
@@ -69,7 +69,7 @@ def shown_instants(settings: Settings, count: int) -> Indices:
 
 
 class Sampler:
-    """Frames of one problem: thinned fields, with forces per length or area.
+    """Sampler of one problem: thinned fields, with forces per length or area.
 
     `run` is the part that all frames share, to which `complete` adds the reference.
     `columns` are the indices of the instants that are shown, shape (n_shown,), and
@@ -113,7 +113,7 @@ class Sampler:
         )
 
     def keep(self, iterate: Iterate) -> None:
-        """Keep an iterate for extras that show past ones."""
+        """Store an iterate for extras that show past ones."""
         self._trail.keep(iterate)
 
     def complete(self, reference: Reference | None) -> None:
@@ -185,14 +185,14 @@ class Sampler:
         }
 
     def _at_columns(self, curve: ExactCurve) -> ExactCurve:
-        """A closed form at the instants that are shown."""
+        """A closed form at the shown instants."""
         if curve.up.ndim == 1:
             across = curve.across[self.columns]
             return replace(curve, across=across, up=curve.up[self.columns])
         return replace(curve, up=curve.up[:, self.columns])
 
     def _names(self, needs: Needs) -> tuple[str, ...]:
-        """Names of the interfaces whose contact a frame has."""
+        """Names of the interfaces whose contact fields are in a frame."""
         size = sum(len(rows) for rows in self.rows.values()) * len(self.columns)
         most = MOST_VALUES
         if TABLE in needs.extras:
@@ -202,7 +202,7 @@ class Sampler:
         return (needs.interface,)
 
     def _interfaces(self) -> dict[str, FrictionInterface]:
-        """Interfaces by name, in the order in which they are stacked."""
+        """Interfaces by name, in the order of stacked fields."""
         contacts = self.problem.contacts
         found = {}
         for law, numbers, _, _ in contacts.stacks:
@@ -270,7 +270,7 @@ class Sampler:
 
 
 def _shown(field: Array | None, points: slice, rows: Indices) -> Floats | None:
-    """Shown rows of a field of an interface, (n_rows, n), from that of its law."""
+    """Shown rows of a field of an interface, (n_rows, n), from the field of its law."""
     if field is None:
         return None
     return floats(field[points][rows])

@@ -1,4 +1,4 @@
-"""A bent strand: its wires as seen from the side, and the extras of its views.
+"""A bent strand: wires seen from the side, and extras of its views.
 
 The view is across the plane of bending onto the cylinder of the outer layer. Each wire
 has a strip of the cylinder, and half of the wires are hidden behind it at any position;
@@ -42,7 +42,7 @@ rad."""
 
 
 class OuterWires(NamedTuple):
-    """Wires of the outer layer of a strand, as they are drawn.
+    """Drawn wires of the outer layer of a strand.
 
     Their number, lay angle, rad, radius of their helix, radius of the strand, and its
     length, all in m, with a number of steps along it.
@@ -73,7 +73,7 @@ class OuterWires(NamedTuple):
         return np.asarray(self.radius * (1.0 - np.cos(angle)))
 
     def strips(self) -> Iterator[tuple[int, Indices, Array]]:
-        """Stretches of wires in front: number, steps, (n,), and nodes, (2, n, 2), m."""
+        """Visible stretches of wires: index, steps, (n,), and nodes, (2, n, 2), m."""
         half = np.pi / self.count
         for number in range(self.count):
             middle = self.angle(number, self.z)
@@ -148,13 +148,13 @@ class DrawnRope:
         }
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
-        """The given bending of the strand, and the status of its wires."""
+        """The prescribed bending of the strand, and the status of its wires."""
         slips = iterate.status[np.ix_(self._points, self._columns)]
         status = (slips * self._sides[:, None]).astype(np.int8)
         return DeformedGeometry(self._nodes_moved, self._points_moved, status)
 
     def _mesh(self) -> dict[str, Any]:
-        """The mesh of the strips; sets wires and points of cells, and moves nodes."""
+        """Make the mesh of strips; set wires and points of cells, and bent nodes."""
         mesh, middles, rows = strips_of(self._wires)
         nearest = self._nearest(mesh["parts"], middles)
         self._quad_wires, _, self._quad_points, _ = nearest
@@ -241,7 +241,7 @@ class DrawnRope:
         return up, slope
 
     def _axial_force(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        """Axial force in the selected wire as in rods, and in a wire that sticks."""
+        """Axial force in the selected wire, and in a sticking wire."""
         rope = self._rope
         columns = self._columns
         names = [wire.name for wire in rope.wires]
@@ -259,7 +259,7 @@ class DrawnRope:
         }
 
     def _section(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        """All wires in a section at the selected position or the clamp, core first.
+        """All wires in a section at the selected position or the clamp; core first.
 
         "position" along the strand, m; "wires", the interface of each, -1 for the core,
         (n,); "centres", (n, 2), and "radii", (n,), m, the outermost fibre below; mean

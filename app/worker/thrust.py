@@ -1,4 +1,4 @@
-"""Resultant forces of joints, where they act, and the hinges that they make."""
+"""Resultant forces of joints, their points of action, and hinges."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from solver.study.quantities.arch_measures import are_hinges
 
 
 class Thrusts:
-    """Joints of bodies, of which the thrust of an iterate is an extra.
+    """Joints of bodies, for the extra of the thrust.
 
     `corner` is the one from which positions are drawn, (2,), m, `columns` are the
     instants that are shown, (n_shown,).
@@ -45,7 +45,7 @@ class Thrusts:
         self._is_chain = len(joints) > 2 and joints.max() <= 2
 
     def of(self, iterate: Iterate, needs: Needs) -> dict[str, Floats]:
-        """Resultant force in every joint, and where it acts.
+        """Resultant force in every joint, and its point of action.
 
         "lines" go from the middle of one body over the point where the resultant acts
         to the middle of the other, (n_joints, 3, 2, n_shown), m; on a support they end

@@ -1,4 +1,4 @@
-"""The way of one point between its friction law and balance, iteration by iteration."""
+"""The path of a point between friction law and equilibrium, over the iterations."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ STRAIGHT = 1e-6
 
 
 class Trail:
-    """Past iterates of a run: the first, the newest, and some of those between.
+    """Past iterates of a run: first, newest, and some in between.
 
     `reference` is the incremental solver's solution, None until it is found, and
     `answer` the certified iterate, None as long as there is none.
@@ -51,7 +51,7 @@ class Trail:
         self.answer: Answer | None = None
 
     def keep(self, iterate: Iterate) -> None:
-        """Keep an iterate, without what was computed from it."""
+        """Store an iterate, without cached properties."""
         if isinstance(iterate, Answer):
             self.answer = iterate
             return
@@ -63,7 +63,7 @@ class Trail:
 
     @property
     def solution(self) -> Reference | Iterate | None:
-        """The solution, as soon as it is known."""
+        """The solution, when it is known."""
         if self.reference is not None:
             return self.reference
         return self.answer
@@ -105,7 +105,7 @@ class IterateStages:
 
 
 class ContactPoint:
-    """A point of an interface, whose pairs move as one; in SI, per length or area.
+    """A point of an interface, whose pairs have equal motion; SI, per length or area.
 
     `pairs` are its pairs, shape (n,), and `number` is its own among the points.
     """
@@ -133,7 +133,7 @@ class ContactPoint:
         return slope * self.force_unit / self.slip_unit, *points
 
     def law_at(self, iterate: Iterate, columns: Indices) -> dict[str, Any]:
-        """The law at instants as the local stage of an iterate read it.
+        """The law at instants, as in the local stage of an iterate.
 
         "bound", the largest friction, and "slider", where the slider stood before, both
         (n_instants,); "soft", the compliance of the spring in series.
@@ -159,7 +159,7 @@ class ContactPoint:
 def zigzag(
     sampled: Sampled, trail: Trail, iterate: Iterate, needs: Needs
 ) -> dict[str, Any]:
-    """The way of one point of the selected interface, and the field of all its points.
+    """The path of a point of the selected interface, and the fields of all its points.
 
     Of the past iterates, at all shown instants: "iterations", their numbers, from 0 for
     a start from nothing; "local" and "linear", slip, m, and friction force on the body
@@ -199,7 +199,7 @@ def zigzag(
 
 
 def _way(point: ContactPoint, past: list[Iterate], columns: Indices) -> dict[str, Any]:
-    """The stages of past iterates at a point, and which ways go along k."""
+    """The stages of past iterates at a point, and which steps are along k."""
     begins = past[0].number == 1 and not past[0].local_incoming.any()
     numbers = [0] * begins + [iterate.number for iterate in past]
     local = np.full((len(numbers), 2, len(columns)), np.nan)
@@ -222,7 +222,7 @@ def _way(point: ContactPoint, past: list[Iterate], columns: Indices) -> dict[str
 
 
 def _is_along(slope: float, start: Array, end: Array) -> Array:
-    """Check whether ways go along a slope, from and to (2, n_instants) each."""
+    """Check whether steps go along a slope, from and to (2, n_instants) each."""
     slip, force = end - start
     size = np.abs(np.stack([start, end])).max(axis=(0, 2))
     tolerance = STRAIGHT * max(size[1], abs(slope) * size[0])
@@ -262,7 +262,7 @@ def _chosen(trail: Trail, iterate: Iterate, law: Contact, needs: Needs) -> int:
 
 @lru_cache(maxsize=1)
 def stiffness_at(sampled: Sampled, name: str, point: int) -> float | None:
-    """Stiffness of the structure against a friction force at one point, scaled.
+    """Stiffness of the structure against a friction force at a point, scaled.
 
     All other contact forces stay as they are: so it is zero where they alone hold a
     body. It is None where the point cannot move, and for very large structures.

@@ -48,7 +48,7 @@ MOVES: dict[str, Preset] = {**PRESETS, "later": LATER}
 
 
 class ArchSettings(PlaneSettings):
-    """Settings of the arch; by default one abutment moves apart, and then inwards."""
+    """Settings of the arch; by default an abutment moves outwards, then inwards."""
 
     scene = "arch"
     title = "Arch of voussoirs"
@@ -266,7 +266,7 @@ class ArchSettings(PlaneSettings):
 
     @cached_property
     def _hold(self) -> Array:
-        """Course of the weights over time, (n_instants,)."""
+        """Factor on the weights over time, (n_instants,)."""
         return PRESETS["hold"].value(self.times() / self.duration, 1)
 
     @property
@@ -282,7 +282,7 @@ class ArchSettings(PlaneSettings):
         return np.asarray(self.path("live_load") * shares)
 
     def _above(self) -> Iterator[Act]:
-        """Fill and load on the back, as drawings show them, at positions in m."""
+        """Arrows of fill and load on the back, at positions in m."""
         ring = self.ring
         if self.fill:
             backs = ring.backs.reshape(-1, 2)
@@ -300,7 +300,7 @@ class ArchSettings(PlaneSettings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterable[ExactCurve]:
-        """Least thrust, once the abutment has moved apart so far that hinges open."""
+        """Smallest thrust, after the abutment has moved outwards until hinges open."""
         least = self._least_thrust
         if least is None or self.has_live or self.abutment != "apart":
             return
@@ -314,7 +314,7 @@ class ArchSettings(PlaneSettings):
 
     @property
     def _least_thrust(self) -> float | None:
-        """Least thrust over the weight; None where friction bounds it, or it falls."""
+        """Smallest thrust over the weight; None if limited by friction, or fallen."""
         thrusts = self.statics.thrusts()
         without_slip = replace(self.statics, friction=np.inf).thrusts()
         if thrusts is None or without_slip is None or not self.unit_weight:

@@ -64,7 +64,7 @@ PATHS = {
 
 
 def _is_end(side: str, *kinds: str) -> Callable[[Any], bool]:
-    """Make the function of all settings that tells whether an end is of some kinds."""
+    """Condition on settings: whether an end is of some kinds."""
     return lambda settings: getattr(settings, f"{side}_end") in kinds
 
 
@@ -126,7 +126,7 @@ def _end_of(settings: Any, side: str) -> End:
 
 
 def _ends_in_words(rods: Rods) -> tuple[str, str]:
-    """Words on ends at rest, and words on ends that are pulled or moved."""
+    """Text on ends at rest, and text on ends that are pulled or moved."""
     at_rest: dict[str, list[str]] = {}
     moved = []
     for side, end in rods.ends.items():
@@ -156,7 +156,7 @@ def _ends_in_words(rods: Rods) -> tuple[str, str]:
 
 
 def _rest_of(end: End) -> str:
-    """Words on an end at rest."""
+    """Text on an end at rest."""
     if end.is_on_spring:
         return "on a spring"
     if end.is_prescribed:
@@ -401,7 +401,7 @@ class BarSettings(Settings):
         return bool(acting.intersection(driven))
 
     def _check_equilibrium(self) -> None:
-        """Refuse forces that friction cannot balance where it alone holds the bar."""
+        """Refuse forces beyond friction if friction alone holds the bar."""
         if {self.left_end, self.right_end} & set(HOLDING):
             return
         rods = self.bodies

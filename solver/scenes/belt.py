@@ -276,7 +276,7 @@ class BeltSettings(PlaneSettings):
 
     @property
     def tail_tension(self) -> Array | None:
-        """Tension of the other end over time, (n_instants,), N; None: it is held.
+        """Tension of the other end over time, (n_instants,), N; None if it is held.
 
         Where the other end does as the pulled one, that of a pulled end.
         """
@@ -319,7 +319,7 @@ class BeltSettings(PlaneSettings):
         self._check_equilibrium()
 
     def _check_equilibrium(self) -> None:
-        """Refuse forces at both ends that are more uneven than friction carries."""
+        """Refuse forces at both ends whose ratio exceeds that of friction."""
         pull = self.tension
         tail = self.tail_tension
         if self.driven == "moved" or tail is None or self.law.cohesion:
@@ -337,7 +337,7 @@ class BeltSettings(PlaneSettings):
         )
 
     def structure(self) -> Band:
-        """Make the band; its width is a metre, over which forces are summed."""
+        """Make the band; its width is a metre."""
         return self._band(self.curve, self.substructures)
 
     def on_mesh_of(self, coarser: Self) -> Band:

@@ -38,7 +38,7 @@ BODY_FORCE = SettingGroup("Body force")
 
 
 def _gap_points(settings: BlockSettings) -> Rows:
-    """Table of the gap of a preset: points (position, gap), m."""
+    """Table of a preset of the gap: points (position, gap), m."""
     x = np.linspace(0.0, settings.length, POINTS)
     return as_points(x, settings.gap_at(x))
 
@@ -151,7 +151,7 @@ class BlockSettings(SideSettings):
         return tuple(drives)
 
     def left_out(self) -> Iterator[str]:
-        """Yield sentences on parts of tables that a run leaves out, as of the gap."""
+        """Yield sentences on points of the gap's table that lie between nodes."""
         yield from super().left_out()
         if isinstance(self.gap, str):
             return
@@ -241,7 +241,7 @@ class BlockSettings(SideSettings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterable[ExactCurve]:
-        """Tractions on a parabola, by a solution's forces, or the slide on a spring."""
+        """Closed forms: tractions under a parabola, or the slide on a spring."""
         body = self.bodies
         if self.gap != "parabola":
             return exact_on_spring(body)

@@ -171,7 +171,7 @@ class BundleSettings(PlaneSettings):
 
     @property
     def n_nodes(self) -> int:
-        """Number of nodes of all bodies, nearly: most are about contacts."""
+        """Estimated number of nodes of all bodies: most are near contacts."""
         zones = 2 * self.n_interfaces + self.n_wires
         return zones * NODES * int(self.elements)
 
@@ -182,7 +182,7 @@ class BundleSettings(PlaneSettings):
 
     @property
     def modulus(self) -> float:
-        """Modulus of a wire that is pressed along a line, Pa."""
+        """Modulus of contact of a wire pressed along a line, Pa."""
         if self.plane == "stress":
             return float(self.young)
         return float(self.young / (1.0 - self.poisson**2))
@@ -198,14 +198,14 @@ class BundleSettings(PlaneSettings):
 
     @property
     def _band(self) -> float:
-        """Force of the band over that of the plate on one wire; none in a heap."""
+        """Force of the band over that of the plate on one wire; 0 in a heap."""
         if not self.applies("band"):
             return 0.0
         return float(self.band)
 
     @property
     def share(self) -> float:
-        """Force of a wire if all of a row carry alike, N for a metre."""
+        """Force on a wire if all of a row carry equal forces, N per metre."""
         weight = self.unit_weight * np.pi * self.length**2 * self.n_wires
         pressed = float(np.abs(self._pressed).max())
         return max(1.0, self._band) * pressed + weight / self.packing.rows[0]
@@ -264,7 +264,7 @@ class BundleSettings(PlaneSettings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
-        """Pressure of Hertz at every contact, for the force found there.
+        """Pressure of Hertz at every contact, for the force of the solution there.
 
         Not on the rigid ground under friction, which keeps a wire from widening.
         """

@@ -67,7 +67,7 @@ def exact_bar(bar: Rods, problem: Problem) -> Iterator[ExactCurve]:
 
 
 def _grown(bar: Rods, slip_factor: SlipFactor) -> Iterator[ExactCurve]:
-    """Loop under a growing load while friction still changes at every slipping point.
+    """Loop under a growing load, while friction changes at every slipping point.
 
     Where friction softens, the load must stay below the largest one that the bar bears.
     """
@@ -100,13 +100,13 @@ def _is_even(bar: Rods) -> bool:
 
 
 def _is_coulombs(body: Stack) -> bool:
-    """Check whether friction on the support is Coulomb's, mu N, with one mu."""
+    """Check whether friction on the support is Coulomb's, mu N, with a uniform mu."""
     assert body.support is not None
     return body.friction_law == FrictionLaw() and not np.ptp(body.support.friction)
 
 
 def is_coupled(poisson: float, state: str) -> bool:
-    """Check whether pressure and friction on a rigid support change each other.
+    """Check whether pressure and friction on a rigid support are coupled.
 
     Plane stress is plane strain with Poisson's ratio nu / (1 + nu), a third at most.
     """
@@ -118,7 +118,7 @@ def is_coupled(poisson: float, state: str) -> bool:
 def exact_parabola(
     body: Stack, radius: float, problem: Problem, solution: LoopFields
 ) -> Iterator[ExactCurve]:
-    """Pressure of Hertz, and friction of Cattaneo and Mindlin, for the forces found."""
+    """Pressure of Hertz, friction of Cattaneo and Mindlin, for a solution's forces."""
     positions = problem.contacts["support"].positions
     contact = solution.contact("support")
     assert contact.normal_force is not None
@@ -175,7 +175,7 @@ def hertz(
 
 
 def _begins(shear: Array, total: Array, friction: float) -> int | None:
-    """Last instant before any shear, if the pressing force is steady from there on.
+    """Last instant before any shear, if the pressing force is constant afterwards.
 
     Shear and total pressing force have shape (n_instants,), N.
     """
@@ -213,7 +213,7 @@ def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
 def exact_layers(
     body: Stack, problem: Problem, solution: LoopFields | None
 ) -> Iterator[ExactCurve]:
-    """Force that bends beams, apart without friction, or as one where nothing slips."""
+    """Force that bends layers: separately without friction, or as one beam if stuck."""
     given = body.sides["right"].y
     is_mixed = body.stiffness is not None and np.ptp(body.stiffness)
     if body.state != "stress" or is_mixed:
@@ -240,7 +240,7 @@ def exact_layers(
 def _elastic_stiffness(
     body: Stack, problem: Problem, solution: LoopFields | None
 ) -> float | None:
-    """Bending stiffness of layers apart or of one beam, N/m; None of others."""
+    """Bending stiffness of separate layers or of one beam, N/m; else None."""
     law = body.friction_law
     is_plain = law == replace(FrictionLaw(), slip_factor=law.slip_factor)
     is_graduated = bool(np.any(body.relative_lengths < 1.0))
@@ -285,7 +285,7 @@ def _two_leaves(body: Stack) -> TwoLeaves | None:
 
 
 def _leaves(body: Stack) -> float | None:
-    """Stiffness of a leaf spring over its longest leaf's; None without closed form.
+    """Stiffness of a leaf spring over that of its longest leaf, or None.
 
     The closed form is for leaves that grow shorter in the direction of bending, and
     that no pressure holds together.

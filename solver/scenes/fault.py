@@ -1,4 +1,4 @@
-"""A fault with a fluid that flows in, reduces friction, and drives a front of slip.
+"""A fault with an inflowing fluid that reduces friction and drives a front of slip.
 
 The strength of the fault is mu (sigma - p), with p the pressure of the fluid, which
 spreads along it by diffusion (MATHEMATICS.md, 17).
@@ -72,7 +72,7 @@ ROUND = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Fault:
-    """A fault as a structure, of which symmetry leaves one quarter.
+    """A fault as a structure; by symmetry one quarter is modelled.
 
     The quarter is the body above the fault, to the right of its middle. The part below
     is its image by half a turn, so that the pressure on the fault never changes and its
@@ -122,7 +122,7 @@ class Fault:
         )
 
     def _acts(self) -> Iterator[Act]:
-        """Yield the loads that are drawn."""
+        """Yield the arrows of loads."""
         along = (1.0, 0.0)
         stress = np.full_like(self.fluid, self.stress)
         yield Act("top x", "τ", np.array([[0.5, 1.0]]), along, stress, "Pa")
@@ -238,7 +238,7 @@ class FaultSettings(RectangleSettings):
     poisson = redefined(RectangleSettings.param["poisson"], 0.25)
 
     def changed_meanings(self) -> Mapping[str, str]:
-        """Describe settings over the slip, which was one side's in the first format."""
+        """Describe settings over slip: the slip of one side in the first format."""
         meanings = {}
         for name, factor in OF_BOTH_SIDES.items():
             value = getattr(self, name)
@@ -256,7 +256,7 @@ class FaultSettings(RectangleSettings):
         return meanings
 
     def fluid(self, place: Array) -> Array:
-        """Pressure of the fluid along the fault, shape (n_places, n_instants), Pa.
+        """Pressure of the fluid along the fault, shape (n_positions, n_instants), Pa.
 
         `place` are positions along the fault, (n_places,), m.
         """
@@ -271,7 +271,7 @@ class FaultSettings(RectangleSettings):
         return fluid[:, np.searchsorted(history, times)]
 
     def pressing(self, place: Array) -> Array:
-        """Normal stress along the fault without the fluid, shape (n_places,), Pa.
+        """Normal stress along the fault without the fluid, shape (n_positions,), Pa.
 
         `place` are positions along the fault, (n_places,), m.
         """
@@ -279,7 +279,7 @@ class FaultSettings(RectangleSettings):
         return np.asarray(self.normal_stress * factors)
 
     def largest_friction(self, place: Array) -> Array:
-        """Largest friction per area along the fault, shape (n_places, n_instants), Pa.
+        """Friction bound per area along the fault, shape (n_positions, n_instants), Pa.
 
         `place` are positions along the fault, (n_places,), m.
         """
@@ -288,7 +288,7 @@ class FaultSettings(RectangleSettings):
         return np.asarray(mu[:, None] * pressing)
 
     def check_together(self) -> None:
-        """Refuse a fluid that would open the fault, or take minutes to spread."""
+        """Refuse a fluid that would open the fault, or whose pressure takes minutes."""
         super().check_together()
         n_points = len(self.knots("injection_load"))
         largest = MOST_SPREAD // (self.nodes[0] * self.n_instants)
@@ -351,7 +351,7 @@ class FaultSettings(RectangleSettings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
-        """Front of slip and friction, as of an infinite body, where slip only spreads.
+        """Front of slip and friction of an infinite body, while slip only spreads.
 
         Slip only spreads where the strength falls with time everywhere, and grows with
         the distance from the well.

@@ -187,11 +187,11 @@ class LayersSettings(RectangleSettings):
 
     @property
     def loop_is_over_displacement(self) -> bool:
-        """Check whether the loop is a force's, not a moment's over a rotation."""
+        """Check whether the loop is a force over a displacement, not a moment."""
         return bool(self.bending != "moment")
 
     def check_together(self) -> None:
-        """Refuse lengths that are not one a layer, and factors not one an interface."""
+        """Refuse tables without one length per layer, one factor per interface."""
         shares = shared.of_each(self, "layer_lengths", self.layers, "layer")
         if shares.min() <= 0.0 or shares.max() != 1.0:
             raise self.refusal(
@@ -203,7 +203,7 @@ class LayersSettings(RectangleSettings):
         shared.factors_of(self)
 
     def left_out(self) -> Iterator[str]:
-        """Yield sentences on parts of tables that a run leaves out, as of lengths."""
+        """Yield sentences on lengths that a run rounds to elements."""
         yield from super().left_out()
         off = float(np.abs(np.array(self.spans) / self.elements - self._shares).max())
         if off > UNSEEN:
@@ -255,7 +255,7 @@ class LayersSettings(RectangleSettings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
-        """Force that bends the layers, if they act apart or as one."""
+        """Force that bends the layers, if they act separately or as one."""
         return exact_layers(self.bodies, problem, solution)
 
     def sentence(self) -> str:

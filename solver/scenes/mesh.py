@@ -1,4 +1,4 @@
-"""A mesh of one's own: bodies of any shape in frictional contact."""
+"""A user's mesh: bodies of any shape in frictional contact."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ LARGEST_BODY = 4_000
 
 @cache
 def mesh_of(text: str) -> NamedMesh:
-    """Checked mesh of the setting: one that comes with the scene, or of a file."""
+    """Checked mesh of the setting `mesh`: an example, or the text of a file."""
     if text in EXAMPLES:
         mesh = read_example(text)
     else:
@@ -46,7 +46,7 @@ def mesh_of(text: str) -> NamedMesh:
 
 
 def _same_for_all(settings: MeshSettings) -> Rows:
-    """Rows of the materials of all bodies where they have the same."""
+    """Rows of the table of materials if all bodies have the same."""
     row = settings.young, settings.poisson, settings.unit_weight
     return tuple((number, *row) for number in range(1, settings.n_bodies + 1))
 
@@ -188,7 +188,7 @@ class MeshSettings(PlaneSettings):
 
     @cached_property
     def parts(self) -> NamedMesh:
-        """The mesh taken apart; coordinates in metres.
+        """Bodies, contacts and sides of the mesh; coordinates in metres.
 
         Raises
         ------
@@ -212,7 +212,7 @@ class MeshSettings(PlaneSettings):
         return list(chain.from_iterable(self.conditions.values()))
 
     def has_condition(self, *verbs: str) -> bool:
-        """Check whether any side is "moved", "pulled" or "pressed"."""
+        """Check whether any side is moved, pulled or pressed."""
         try:
             every = self._every_condition
         except RefusedError:
@@ -258,7 +258,7 @@ class MeshSettings(PlaneSettings):
         return {"substructures": min(counts)}
 
     def coarser(self) -> Iterator[Problem]:
-        """Yield no problem: a mesh of a file has no coarser one."""
+        """Yield nothing: a mesh from a file has no coarser mesh."""
         return iter(())
 
     def check_together(self) -> None:
@@ -299,7 +299,7 @@ class MeshSettings(PlaneSettings):
             )
 
     def _check_tables(self) -> None:
-        """Refuse tables that do not number all bodies and contacts."""
+        """Refuse tables without a row for each body or contact."""
         if self.n_interfaces:
             shared.factors_of(self)
         numbers = [row[0] for row in self.points("materials")]
@@ -312,7 +312,7 @@ class MeshSettings(PlaneSettings):
             )
 
     def left_out(self) -> Iterator[str]:
-        """Yield sentences on what names and tables say that a run leaves out."""
+        """Yield sentences on names and rows of tables that a run ignores."""
         yield from super().left_out()
         between = [name for name, bodies in self.parts.groups if len(bodies) > 1]
         for name in dict.fromkeys(between):
@@ -401,7 +401,7 @@ class MeshSettings(PlaneSettings):
 
 
 def _of_setting(name: str, refusal: RefusedError) -> SettingError:
-    """Refusal of a setting by what is refused in it."""
+    """Refusal of a setting from the refusal of its content."""
     found = refusal.value
     if refusal.name != name:
         found = Words(f"{refusal.name} {refusal.value}")

@@ -74,7 +74,7 @@ ERRORS = (
 
 
 def read_mesh(data: bytes, source: str) -> NamedMesh:
-    """Mesh in a file of a kind that meshio reads by the end of its name.
+    """Read a mesh from a file of a format that meshio knows by the suffix.
 
     Raises
     ------
@@ -111,13 +111,13 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
 
 
 def read_example(name: str) -> NamedMesh:
-    """Mesh that comes with the scene, by its name."""
+    """Read a mesh that comes with the scene, by its name."""
     path = Path(__file__).parent / "meshes" / f"{name}{GMSH}"
     return read_mesh(path.read_bytes(), path.name)
 
 
 def named(mesh: Any) -> NamedMesh:
-    """Mesh with names from one of meshio.
+    """Named mesh from a mesh of meshio.
 
     Of quadratic elements the corners are taken. Quadrilaterals of a body that has
     triangles, too, become two of these.
@@ -158,7 +158,7 @@ def named(mesh: Any) -> NamedMesh:
 def _along_named_points(
     sets: Mapping[str, Indices], bodies: Mapping[str, Indices]
 ) -> Iterator[tuple[str, Indices]]:
-    """Yield names of sets of points, (n,), and the outer edges of bodies in them.
+    """Yield names of sets of points, and the outer edges, (n, 2), of bodies in them.
 
     Programs such as Abaqus name the nodes of a side. A set of all points of a body says
     nothing on its sides.
@@ -253,7 +253,7 @@ def _in_plane(points: Array) -> Array:
 
 
 def _of_one_kind(parts: list[Indices]) -> Indices:
-    """Elements of a body, (n, 3) or (n, 4), from those of each kind."""
+    """Elements of a body, (n, 3) or (n, 4), joined from those of each kind."""
     if len({elements.shape[1] for elements in parts}) > 1:
         halves = [elements[:, [0, 2, 3]] for elements in parts if elements.shape[1] > 3]
         parts = [elements[:, :3] for elements in parts] + halves
@@ -261,7 +261,7 @@ def _of_one_kind(parts: list[Indices]) -> Indices:
 
 
 def as_text(mesh: NamedMesh) -> str:
-    """Text of a mesh, of which `from_text` makes the mesh again."""
+    """Text of a mesh, which `from_text` reads."""
     used = np.unique(
         np.concatenate([cells.ravel() for cells in mesh.surfaces.values()])
     )
@@ -283,7 +283,7 @@ def as_text(mesh: NamedMesh) -> str:
 
 
 def from_text(text: str) -> NamedMesh:
-    """Mesh of a text that `as_text` made."""
+    """Read a mesh from a text of `as_text`."""
     try:
         data = base64.b64decode(text.removeprefix(HEAD), validate=True)
         found = _arrays_in(data)
@@ -303,7 +303,7 @@ def from_text(text: str) -> NamedMesh:
 
 
 def _arrays_in(data: bytes) -> dict[str, Array]:
-    """Arrays of any shape by name in a file of NumPy; a file too large is refused."""
+    """Arrays of any shape by name in a file of NumPy; refuse too large a file."""
     with zipfile.ZipFile(io.BytesIO(data)) as content:
         size = sum(entry.file_size for entry in content.infolist())
     if size > LARGEST:

@@ -1,4 +1,4 @@
-"""Words on the sides of a mesh: what each of them is held, moved or loaded by.
+"""Conditions on the sides of a mesh, in words: held, moved or loaded.
 
 They stand behind the name of a side in the mesh, as in "left held", or in the setting
 `sides`.
@@ -98,7 +98,7 @@ def conditions_of(lines: Sequence[str], given: str) -> Mapping[str, tuple[str, .
 
 
 class _Acted(NamedTuple):
-    """A condition on a line on the outside of a body, and a name of its own."""
+    """A condition on a line on the outside of a body, with a unique name."""
 
     name: str
     condition: str
@@ -161,7 +161,7 @@ class MeshSides:
                 yield replace(load, pressure=inward)
 
     def _acted(self) -> Iterator[_Acted]:
-        """Yield the conditions on all lines; of one name and body they have numbers."""
+        """Yield the conditions on all lines; equal names get numbers."""
         counts: dict[str, int] = {}
         for line in self.mesh.sides:
             bodies = {
@@ -180,7 +180,7 @@ class MeshSides:
 
 
 def _runs(flags: Sequence[bool]) -> list[range]:
-    """Runs of places whose flags are set, in order."""
+    """Ranges of consecutive set flags, in order."""
     runs = []
     start = 0
     for is_set, run in groupby(flags):

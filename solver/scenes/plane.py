@@ -116,7 +116,7 @@ class PlaneSettings(Settings):
 
 
 def poisson_in(settings: Settings, inside: Inside) -> Array | float:
-    """Poisson's ratio of every element, (n_elements,), or one of all in the plane."""
+    """Poisson's ratio of every element, (n_elements,), or the common one."""
     structure = settings.structure()
     if isinstance(structure, Bodies):
         # Bodies of a mesh may each have a material of their own.
@@ -180,7 +180,7 @@ class RectangleSettings(PlaneSettings):
         return np.linspace(0.0, self.length, self.nodes[0])
 
     def friction_at_nodes(self) -> float | Array:
-        """Coefficient mu of the nodes along a body, (n_nodes,), or one for all."""
+        """Coefficient mu at the nodes along a body, (n_nodes,), or a uniform one."""
         if self.friction_profile == "uniform" or not self.applies("friction_profile"):
             return self.friction
         factors = shared.at_nodes(self, self.places, "friction_profile")
@@ -219,7 +219,7 @@ class RectangleSettings(PlaneSettings):
         )
 
     def check_together(self) -> None:
-        """Refuse elements too flat for the digits of a number, and large matrices."""
+        """Refuse elements too flat for double precision, and large matrices."""
         height: float = getattr(self, self.across)
         ratio = self.length * self.elements_up / (height * self.elements)
         if not 1.0 / FLATTEST <= ratio <= FLATTEST:

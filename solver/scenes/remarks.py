@@ -1,4 +1,4 @@
-"""Remarks on a run beside its status: before it begins, and on its result."""
+"""Remarks on a run besides its status: before it begins, and on its result."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def ends_of_tables(settings: Settings) -> dict[str, float]:
 
 
 def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
-    """Sentences on an iterate, final or not, that its status does not tell.
+    """Sentences on an iterate, final or not, in addition to its status.
 
     They are on points left out of tables, strains beyond small ones, a body that tips,
     a contact that grows too fast for the instants, and bodies that may stand elsewhere.
@@ -95,7 +95,7 @@ def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
 
 
 def _one_of_several(answer: Answer) -> str:
-    """Sentence on a certified answer beside which there are others; empty without."""
+    """Sentence on a certified answer that is one of several; else ""."""
     problem = answer.problem
     others = other_positions(problem, answer.displacement, answer.contact_force)
     if not others:
@@ -127,7 +127,7 @@ def _tipping(problem: Problem, first: int) -> str:
 
 
 def contact_growth(iterate: Iterate) -> int:
-    """Largest number of points with friction that a contact gains between two instants.
+    """Largest number of points that a contact gains between two instants.
 
     The first closing of a contact does not count, nor does a contact of sides that fit:
     what load opens and closes there takes its size at once, with any instants.
@@ -163,7 +163,7 @@ def _standing_on_an_end(settings: Settings, iterate: Iterate) -> Flags:
 def largest_strain(
     structure: Structure, problem: Problem, displacement: Array
 ) -> float:
-    """Largest strain or slope of a solution: the largest derivative of displacement.
+    """Largest strain or rotation of a solution: largest derivative of displacement.
 
     A translation has none. Along rods it is the strain of an element; in the plane the
     mean derivative over an element, rotation included; of a band on a guide its strain
@@ -185,7 +185,7 @@ def largest_strain(
 def beyond_small_strain(
     structure: Structure, problem: Problem, displacement: Array
 ) -> str | None:
-    """Sentence on strains too large for the model; None if they are small.
+    """Sentence on strains too large for linear elasticity; None if they are small.
 
     `displacement` is that of the problem's degrees of freedom, (n_dofs, n_instants), m.
     """

@@ -191,12 +191,12 @@ class RopeSettings(Settings):
 
     @property
     def is_clamped(self) -> bool:
-        """Check whether the curvature falls away from a clamp."""
+        """Check whether the curvature decays from a clamp."""
         return bool(self.bending == "clamp")
 
     @property
     def n_bodies(self) -> int:
-        """Number of wires whose slip is unknown; the core does not slip."""
+        """Number of wires that may slip, without the core."""
         section = self.section
         if self.is_clamped:
             return section.wires - 1
@@ -215,7 +215,7 @@ class RopeSettings(Settings):
         return float(max(layer.stiffness for layer in layers) / longest**2)
 
     def check_together(self) -> None:
-        """Refuse a curvature without any fall-off, and factors not one an interface."""
+        """Refuse curvature without decay, and tables without a factor per interface."""
         super().check_together()
         shared.factors_of(self)
         needs_tension = self.is_clamped and self.fall_off == 0.0
@@ -227,7 +227,7 @@ class RopeSettings(Settings):
             )
 
     def falls_off(self) -> float:
-        """Distance over which the curvature falls to exp(-1), m."""
+        """Distance over which the curvature decays to exp(-1), m."""
         if self.fall_off:
             return float(self.fall_off)
         tension = self.path("tension_load").max()
@@ -254,7 +254,7 @@ class RopeSettings(Settings):
         )
 
     def _wires(self) -> Iterator[RopeWire]:
-        """Yield the wires whose slip is unknown, layer by layer."""
+        """Yield the wires that may slip, layer by layer."""
         section = self.section
         tension = self.path("tension_load")
         factors = shared.factors_of(self)
@@ -289,7 +289,7 @@ class RopeSettings(Settings):
         return np.outer(share, self.path("load"))
 
     def _length_of(self, layer: int) -> float:
-        """Length of the wires of a layer, m: to the clamp, or half round the strand."""
+        """Length of the wires of a layer, m: to the clamp, or half a turn."""
         lay = self.section.layers[layer].lay
         if self.is_clamped:
             return float(self.length / np.cos(lay))

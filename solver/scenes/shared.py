@@ -1,4 +1,4 @@
-"""Parts that scenes share: definitions of settings, and words of their sentences."""
+"""Parts that scenes share: definitions of settings, and phrases for sentences."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def profile(
 
 
 def _over_length(shares: Rows, settings: Settings) -> Rows:
-    """Points (position, factor), m, from points over shares of the length."""
+    """Points (position, factor), m, from points (share of the length, factor)."""
     return tuple((share * settings.length, factor) for share, factor in shares)
 
 
@@ -115,7 +115,7 @@ def at_nodes(settings: Settings, places: Array, *profiles: str) -> Array:
 
 
 def friction_factors(which: str) -> CurveParameter:
-    """Define the factors on mu of the interfaces."""
+    """Define the table of factors on mu of the interfaces."""
     same = TablePreset("1 of each", lambda settings: same_for(settings.n_interfaces))
     return CONTACT.curve(
         "same",
@@ -144,7 +144,7 @@ def sized_path(
     group: SettingGroup = LOAD,
     **record: Any,
 ) -> tuple[param.Number[float], CurveParameter]:
-    """Define the value that presets of a path over time reach, and the path.
+    """Define a path over time, and the setting of its presets' largest value.
 
     A path whose value is 0 by default applies only while the value is not 0.
 
@@ -194,7 +194,7 @@ def _column_name(what: str, unit: str) -> str:
 
 
 def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParameter]:
-    """Define the pressure of rods, per length, up to `slider`, and its path."""
+    """Define the pressure of rods per length, with slider range, and its path."""
     return sized_path(
         "pressure_load",
         "pressure",
@@ -213,7 +213,7 @@ def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParam
 
 
 def strength(settings: Any, factors: Array) -> Array:
-    """Largest friction mu p of rods at nodes per length, N/m, from factors, (n_nodes,).
+    """Friction strength mu p of rods at nodes, N/m, from factors, (n_nodes,).
 
     Shape (n_nodes,), or (n_nodes, n_instants) where the pressure changes.
     """
@@ -229,12 +229,12 @@ def factors_of(settings: Any) -> Array:
 
 
 def same_for(count: int) -> Rows:
-    """Table of the value 1 for each number from 1 to a count."""
+    """Table with the value 1 for each number from 1 to a count."""
     return tuple((float(number), 1.0) for number in range(1, count + 1))
 
 
 def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
-    """Values of a table with a row for each part, (count,); refuse others."""
+    """Values of a table with a row for each part, (count,); refuse other tables."""
     table = settings.points(name)
     numbers, values = np.array(table).T
     if not np.array_equal(numbers, np.arange(1, count + 1)):
@@ -292,7 +292,7 @@ def acting(
     both: str = "{} to and fro",
     back: str = "{} and let go",
 ) -> str:
-    """Words on the course of a load over time.
+    """Phrase for a load over time: direction of push and pull, to and fro.
 
     Parameters
     ----------

@@ -95,7 +95,7 @@ class SideLoad:
         )
 
     def slope(self) -> param.Number[float]:
-        """Define the share by which the value changes from the middle to an end."""
+        """Define the relative change of the value from the middle to an end."""
         return self._group.quantity(
             0.0,
             (-1e6, 1e6),
@@ -107,7 +107,7 @@ class SideLoad:
         )
 
     def path(self) -> CurveParameter:
-        """Define the path over time, of a traction as of a displacement."""
+        """Define the path over time of the traction or displacement."""
         return self._group.curve(
             "hold" if self.component == "normal" else "delayed",
             PRESETS,
@@ -145,12 +145,12 @@ class SideLoad:
 
     @property
     def _group(self) -> SettingGroup:
-        """Heading of the side."""
+        """Heading of the group of the side's settings."""
         return SettingGroup(self.side.capitalize())
 
     @property
     def _title(self) -> str:
-        """Words on the component."""
+        """Title of the component."""
         return f"{self._group.name} {self.component}"
 
     @property
@@ -160,7 +160,7 @@ class SideLoad:
         return "x" if is_along_x else "y"
 
     def _is_given(self, settings: Any) -> bool:
-        """Check whether anything but rest is given along the side."""
+        """Check whether the side has a load or motion."""
         return getattr(settings, self.side) not in AT_REST
 
     def _is_prescribed(self, settings: Any) -> bool:
@@ -234,7 +234,7 @@ class SideSettings(RectangleSettings):
                 yield f"{shared.listed(actions)} at its {side}"
 
     def _given(self, side: str, component: str) -> SideComponent:
-        """Displacement or traction of a side over time."""
+        """Prescribed displacement or traction of a side over time."""
         kind = getattr(self, side)
         prescribed: bool = getattr(PRESCRIBED[kind], component)
         if kind in AT_REST:

@@ -126,7 +126,7 @@ class StrandSettings(Settings):
         return float(self.young * self.section / self.length**2)
 
     def check_together(self) -> None:
-        """Refuse factors not one an interface, and tensions without equilibrium."""
+        """Refuse tables without a factor per interface, and unbalanced tensions."""
         super().check_together()
         shared.factors_of(self)
         self._check_equilibrium(self.path("load"))
@@ -165,7 +165,7 @@ class StrandSettings(Settings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
-        """Forces of the broken wire and of each neighbour, by a closed form."""
+        """Forces of the broken wire and of its neighbours, by a closed form."""
         strand = self.bodies
         exact = broken_wire(strand)
         if exact is not None:

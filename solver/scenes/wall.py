@@ -283,7 +283,7 @@ class WallSettings(RectangleSettings):
 
     @property
     def largest_counts(self) -> dict[str, int]:
-        """Largest numbers of parts as settings are: each brick may be a group."""
+        """Largest number of each kind of parts: each brick may be a group."""
         return super().largest_counts | {"brick_groups": self.n_substructures}
 
     @property
@@ -327,7 +327,7 @@ class WallSettings(RectangleSettings):
             )
 
     def _check_opening(self, name: str, largest: int, reason: str) -> None:
-        """Refuse a size of the opening beyond the largest one, in bricks or courses."""
+        """Refuse a size of the opening, in bricks or courses, beyond the largest."""
         if getattr(self, name) > largest:
             raise self.refusal(
                 name,
@@ -354,7 +354,7 @@ class WallSettings(RectangleSettings):
 
     @property
     def _on_ground(self) -> float:
-        """Coefficient mu of the ground."""
+        """Coefficient mu on the ground."""
         return float(self.friction * self.ground_friction)
 
     @cached_property

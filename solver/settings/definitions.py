@@ -1,4 +1,4 @@
-"""Definitions of settings: their kinds, groups, help and looks.
+"""Definitions of settings: kinds, groups, help, and properties for widgets.
 
 Widgets, address, command line and saved files all derive from these definitions.
 """
@@ -21,7 +21,7 @@ POSITIVE = ANY, (0.0, 1e15)
 
 @dataclass(frozen=True)
 class SettingProperties:
-    """Properties of a setting that a front needs beside its value.
+    """Properties of a setting besides its value, for page and command line.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class SettingProperties:
 
 
 class Described(Protocol):
-    """A preset of any kind of setting."""
+    """A preset of any kind of setting: an object with a description."""
 
     @property
     def description(self) -> str:
@@ -104,12 +104,12 @@ class CurveParameter(Parameter):
 
     @property
     def is_path(self) -> bool:
-        """Check whether rows are an abscissa, which increases, and one value."""
+        """Check whether the curve is a path: an increasing abscissa, and one value."""
         return len(self.columns) == 2
 
 
 class TextParameter(Parameter):
-    """A text: one of a few presets, or another one that the scene understands.
+    """A text: one of a few presets, or another text that the scene understands.
 
     Attributes
     ----------
@@ -139,7 +139,7 @@ class TextParameter(Parameter):
 
 
 def properties_of(parameter: Parameter) -> SettingProperties:
-    """Properties of a setting that a front needs, from its definition."""
+    """Properties of a setting, from its definition."""
     record: SettingProperties = parameter.metadata["about"]
     return record
 
@@ -151,13 +151,13 @@ def help_of(definition: Parameter) -> str:
 
 
 def lines_of(definition: Parameter) -> list[str]:
-    """Lines on the presets of a setting, which begin with their names."""
+    """Descriptions of the presets of a setting, each after its name."""
     presets = properties_of(definition).presets
     return [f"{named_preset(preset)}: {line}" for preset, line in presets.items()]
 
 
 def named_preset(preset: str) -> str:
-    """Name of a preset in a sentence, also of one that is an empty text."""
+    """Name of a preset in a sentence: "nothing" for an empty text."""
     return preset or "nothing"
 
 
@@ -167,7 +167,7 @@ def title_of(definition: Parameter) -> str:
 
 
 def is_logarithmic(definition: Any) -> bool:
-    """Check whether a slider is logarithmic: its range is far more than a decade."""
+    """Check whether a slider is logarithmic: if its range is far more than a decade."""
     low, high = definition.softbounds
     ratio = 20
     if isinstance(definition, param.Integer):
@@ -218,7 +218,7 @@ class SettingGroup:
     def choice(
         self, default: str, options: Iterable[str], doc: str, **record: Any
     ) -> param.Selector[str]:
-        """Setting that is one of a few names."""
+        """Setting with one of a few names."""
         return param.Selector(
             default=default, objects=list(options), **self._common(doc, **record)
         )
@@ -226,7 +226,7 @@ class SettingGroup:
     def preset(
         self, default: str, presets: Mapping[str, Described], doc: str, **record: Any
     ) -> param.Selector[str]:
-        """Setting that is one of a few presets, and no table."""
+        """Setting with one of a few presets, without tables."""
         return self.choice(default, presets, doc, presets=_lines_on(presets), **record)
 
     def curve(
@@ -239,7 +239,7 @@ class SettingGroup:
         bounds: Sequence[tuple[float, float]] = (),
         **record: Any,
     ) -> CurveParameter:
-        """Path or table: a preset's name, or rows with units and bounds of columns."""
+        """Path or table: name of a preset, or rows with units and bounds of columns."""
         bounds = bounds or [ANY] * len(units)
         common = self._common(doc, presets=_lines_on(presets), **record)
         return CurveParameter(default, presets, units, bounds, **common)
@@ -254,7 +254,7 @@ class SettingGroup:
         is_file: bool = False,
         **record: Any,
     ) -> TextParameter:
-        """Text: a preset, or one of `others`; the scene says which it understands."""
+        """Text: a preset, or another text, of a kind that `others` describes."""
         common = self._common(doc, presets=presets, **record)
         return TextParameter(default, presets, others, is_file=is_file, **common)
 
@@ -286,7 +286,7 @@ def redefined(
     title: str | None = None,
     **record: Any,
 ) -> Any:
-    """Define a setting anew for some scenes, with changes to its definition."""
+    """Copy of a setting's definition, with changes, for some scenes."""
     # A copy, as all scenes share the definition.
     again = copy.copy(definition)
     again.default = default

@@ -109,7 +109,7 @@ class FrictionSettings(MethodSettings):
 
     @property
     def is_general(self) -> bool:
-        """Check whether all parts of the friction law are given."""
+        """Check whether the friction law is the general one, with all its parts."""
         return bool(self.friction_law == "general")
 
     @property
@@ -144,7 +144,7 @@ class FrictionSettings(MethodSettings):
         )
 
     def strength_points(self) -> Rows:
-        """Points (slip, factor) of the strength: of its table, or of its preset."""
+        """Points (slip, factor) of the strength, from its table or preset."""
         table: str | Rows = self.strength
         if self.is_linear_in_slip:
             return (0.0, 1.0), (self.slip_length, self.friction_ratio)
@@ -153,7 +153,7 @@ class FrictionSettings(MethodSettings):
         return table
 
     def check_together(self) -> None:
-        """Refuse a strength that does not begin at 1, and too soft or stiff contact."""
+        """Refuse a strength that does not begin at 1, too soft or too stiff contact."""
         super().check_together()
         if not self.is_general:
             return
@@ -168,7 +168,7 @@ class FrictionSettings(MethodSettings):
             )
 
     def _check_strength(self) -> None:
-        """Refuse a table that does not begin at (0, 1), or has too close slips."""
+        """Refuse a table that does not begin at (0, 1), or has slips too close."""
         table = self.strength
         if isinstance(table, str):
             return
@@ -183,7 +183,7 @@ class FrictionSettings(MethodSettings):
             )
 
     def check_digits(self, name: str, stiffness: float, remedy: str) -> None:
-        """Refuse a stiffness of which no digits are left beside that of bodies."""
+        """Refuse a stiffness that vanishes by rounding beside that of the bodies."""
         # Beyond these bounds the spring, or the body, has no digit left in their sum.
         value = getattr(self, name)
         definition = self.definitions()[name]

@@ -92,14 +92,14 @@ class LoadSettings(FrictionSettings):
 
     @cached_property
     def paths(self) -> tuple[str, ...]:
-        """Names of the curves over time that do something."""
+        """Names of the curves over time that apply under the present settings."""
         # Settings stay, and their instants ask for the paths again and again.
         return tuple(name for name in self._curves() if self.applies(name))
 
     @classmethod
     @cache
     def _sizes(cls) -> Mapping[str, tuple[str, ...]]:
-        """Names of the settings of the value of presets, by the name of the path."""
+        """Names of the settings of largest values, by the name of the path."""
         sizes: dict[str, tuple[str, ...]] = {}
         for name, definition in cls.definitions().items():
             path = properties_of(definition).path
@@ -108,7 +108,7 @@ class LoadSettings(FrictionSettings):
         return sizes
 
     def size_setting(self, path: str) -> str | None:
-        """Name of the setting of the value of a path's presets; None: it is 1."""
+        """Name of the setting of a path's largest value; None if that is 1."""
         sizes = self._sizes().get(path, ())
         definitions = self.definitions()
         # Of several sizes, as a force or a displacement, the one that applies.
@@ -120,24 +120,24 @@ class LoadSettings(FrictionSettings):
         return None
 
     def size_of(self, path: str) -> float:
-        """Largest value that a preset of a path over time reaches."""
+        """Largest value of a path over time, if it is a preset."""
         name = self.size_setting(path)
         if name is None:
             return 1.0
         return float(getattr(self, name))
 
     def is_active(self, path: str) -> bool:
-        """Check whether a path is a table, or a preset of a value that is not 0."""
+        """Check whether a path is a table, or a preset with a nonzero largest value."""
         return not isinstance(getattr(self, path), str) or self.size_of(path) != 0.0
 
     def size_or_table(self, path: str) -> str:
-        """Name of the setting that makes a path smaller: its size, or its table."""
+        """Name of the setting that scales a path: its largest value, or its table."""
         if isinstance(getattr(self, path), str):
             return self.size_setting(path) or path
         return path
 
     def curve_units(self, name: str) -> tuple[str, ...]:
-        """Units of a curve as settings are; the value of a path has its size's."""
+        """Units of a curve's columns under the present settings."""
         units: tuple[str, ...] = self.definitions()[name].units
         size = self.size_setting(name)
         if size is None:
@@ -167,12 +167,12 @@ class LoadSettings(FrictionSettings):
 
     @property
     def n_instants(self) -> int:
-        """Number of instants: at least as many as are set."""
+        """Number of instants: at least the setting `instants`."""
         return len(self._times)
 
     @cached_property
     def _times(self) -> Array:
-        """Instants, (n_instants,), s; of large problems those of thinned tables."""
+        """Instants, (n_instants,), s; for large problems from thinned tables."""
         instants = self._instants({name: getattr(self, name) for name in self._tables})
         # Tables are thinned only where every point of them would cost minutes.
         if self.n_nodes * len(instants) > EVERY_POINT and self._tables:
@@ -188,7 +188,7 @@ class LoadSettings(FrictionSettings):
         return tuple(name for name in self.paths if self.preset(name) is None)
 
     def _thinned(self, name: str) -> Rows:
-        """Points of a table that its path needs to stay within a share of its range."""
+        """Points of a table that keep its path within a share of its range."""
         table: Rows = getattr(self, name)
         kept = thinned(table, THINNED * float(np.ptp(np.array(table)[:, 1])))
         return tuple(table[index] for index in kept)
@@ -222,20 +222,20 @@ class LoadSettings(FrictionSettings):
         )
 
     def knots(self, name: str) -> Array:
-        """Times at which a path turns or bends, (n_knots,), s; a table's points."""
+        """Times at which a path has kinks, (n_knots,), s; of a table its points."""
         preset = self.preset(name)
         if preset is None:
             return np.array(getattr(self, name))[:, 0]
         return self.duration * preset.corners(self.seed, self.cycles)
 
     def _turning(self, name: str, knots: Array) -> Array:
-        """Knots inside the interval at which a path turns back, (n_turns,), s."""
+        """Knots inside the interval at which a path reverses, (n_turns,), s."""
         inside = knots[(knots > 0.0) & (knots < self.duration)]
         every = np.concatenate([[0.0], inside, [self.duration]])
         return turning_knots(every, self.path_at(name, every))
 
     def left_out(self) -> Iterator[str]:
-        """Yield sentences on points of tables that a run leaves out by thinning."""
+        """Yield sentences on points of tables that thinning removes from a run."""
         times = self.times()
         for name in self._tables:
             abscissae, values = np.array(getattr(self, name)).T
@@ -281,7 +281,7 @@ class LoadSettings(FrictionSettings):
         return tuple(drives)
 
     def points(self, name: str) -> Rows:
-        """Rows of a curve: of its table, or of a table that stands for its preset."""
+        """Rows of a curve: of its table, or of a table equivalent to its preset."""
         value: str | Rows = getattr(self, name)
         if not isinstance(value, str):
             return value
@@ -302,7 +302,7 @@ class LoadSettings(FrictionSettings):
 
 
 def as_points(abscissae: Array, values: Array) -> Rows:
-    """Points (abscissa, value) of six digits, from arrays of shape (n_points,)."""
+    """Points (abscissa, value) with six digits, from arrays of shape (n_points,)."""
     points = []
     for abscissa, value in zip(abscissae, values, strict=True):
         points.append((float(f"{abscissa:.6g}"), float(f"{value:.6g}")))

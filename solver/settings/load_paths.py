@@ -34,7 +34,7 @@ Wave = Callable[[Array], Array]
 
 
 def interpolate(points: Rows | Array, where: Array) -> Array:
-    """Values of a table of (abscissa, value), linear in between and constant outside.
+    """Interpolate a table (abscissa, value): linear inside, constant outside.
 
     `where` are abscissae of any shape; the values have that shape, too.
     """
@@ -50,7 +50,7 @@ def interpolate(points: Rows | Array, where: Array) -> Array:
 
 @dataclass(frozen=True)
 class Preset:
-    """A path over the phase of the interval, with straight lines between its points.
+    """A preset of a path over the phase of the interval.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class Preset:
         return np.interp(after, *self.points(seed))
 
     def corners(self, seed: int, cycles: int = 1) -> Array:
-        """Phases inside the interval at which the path turns or bends, (n_corners,)."""
+        """Phases inside the interval at which the path has kinks, (n_corners,)."""
         corners = self.begins + (1.0 - self.begins) * self.points(seed)[0][:-1]
         corners = corners[corners > 0.0]
         if cycles == 1 or self.repeats is None:
@@ -137,7 +137,7 @@ def _sine(phase: Array) -> Array:
 
 
 def _sine_squared(phase: Array) -> Array:
-    """Sine squared, of two waves in a period of 1, of the shape of the phases."""
+    """Squared sine with two waves in a period of 1, of the shape of the phases."""
     return _sine(phase) ** 2
 
 
@@ -285,7 +285,7 @@ INJECTIONS: dict[str, Preset] = {
 def instants_of(
     duration: float, number: int, knots: Array = NO_KNOTS, corners: Array = NO_KNOTS
 ) -> Array:
-    """Instants of a time interval, (n_instants,), s, among them knots of paths.
+    """Instants of a time interval, (n_instants,), s, including the knots of paths.
 
     Between knots instants are evenly spaced.
 
@@ -324,7 +324,7 @@ def instants_of(
 
 
 def _divided(ends: Array, steps: Indices) -> Array:
-    """Ends of intervals, (n_intervals + 1,), with each divided into equal steps.
+    """Divide intervals between ends, (n_intervals + 1,), into equal steps each.
 
     `steps` is the number of steps of each interval, (n_intervals,).
     """
@@ -336,7 +336,7 @@ def _divided(ends: Array, steps: Indices) -> Array:
 
 
 def apart(times: Array, others: Array, distance: float) -> Array:
-    """Times that are farther than a distance from all others.
+    """Times that are farther than a distance from all of `others`.
 
     Times and others are of shape (n_times,) and (n_others,), s; others are sorted.
     """
@@ -350,7 +350,7 @@ def apart(times: Array, others: Array, distance: float) -> Array:
 
 
 def turning_knots(knots: Array, values: Array) -> Array:
-    """Knots, (n_turns,), s, at which a path turns back that begins at zero.
+    """Knots, (n_turns,), s, at which a path from zero reverses.
 
     Knots, s, and the values of the path there have shape (n_knots,).
     """
@@ -361,7 +361,7 @@ def turning_knots(knots: Array, values: Array) -> Array:
 
 
 def thinned(points: Rows | Array, allowed: float) -> Indices:
-    """Indices of points of a table, (n_kept,), whose path differs by an allowed error.
+    """Indices of points of a table, (n_kept,), that keep its path within an error.
 
     The table has shape (n_points, 2); the error is in the unit of its values. The first
     and the last point are kept, and the largest and the smallest value.

@@ -20,12 +20,12 @@ STOP = SettingGroup("Stop")
 
 
 def _on_modes(settings: MethodSettings) -> bool:
-    """Check whether the linear stage finds a sum of modes (PGD)."""
+    """Check whether the linear stage uses a sum of modes (PGD)."""
     return bool(settings.linear_stage == "pgd")
 
 
 class MethodSettings(param.Parameterized):
-    """Settings of the method; load, friction and scenes add theirs in derived classes.
+    """Settings of the method; derived classes add those of load, friction and scenes.
 
     `checked` is the one place at which values are verified, each alone and all
     together. Settings never change; `replace` makes new ones.
@@ -230,7 +230,7 @@ class MethodSettings(param.Parameterized):
 
     @classmethod
     def checked(cls, values: Mapping[str, object]) -> Self:
-        """Make settings of values by name; others are set by the method, or by default.
+        """Make settings from values by name; others follow from method or defaults.
 
         Raises
         ------
@@ -242,7 +242,7 @@ class MethodSettings(param.Parameterized):
 
     @classmethod
     def _clean(cls, values: Mapping[str, object]) -> dict[str, Any]:
-        """Plain values by name, each checked by itself."""
+        """Plain values by name, each checked separately."""
         definitions = cls.definitions()
         clean = {}
         for name, value in values.items():
@@ -253,7 +253,7 @@ class MethodSettings(param.Parameterized):
 
     @classmethod
     def _of(cls, values: dict[str, Any]) -> Self:
-        """Settings of plain values that are checked each by itself."""
+        """Settings of plain values that have been checked separately."""
         definitions = cls.definitions()
         method = values.get("method", definitions["method"].default)
         complete = cls.of_method(method) | values
@@ -280,14 +280,14 @@ class MethodSettings(param.Parameterized):
 
     @classmethod
     def defaults(cls, method: str) -> dict[str, Any]:
-        """Value of every setting where only the method is given."""
+        """Value of every setting if only the method is given."""
         values = {
             name: definition.default for name, definition in cls.definitions().items()
         }
         return values | cls.of_method(method)
 
     def check_together(self) -> None:
-        """Refuse values that do not fit together; derived classes extend this."""
+        """Refuse values that are inconsistent; derived classes extend this."""
 
     def values(self) -> dict[str, Any]:
         """Plain value of every setting, by name."""
@@ -319,7 +319,7 @@ class MethodSettings(param.Parameterized):
         return changed
 
     def replace(self, /, **changes: object) -> Self:
-        """Make settings with some values changed, checked as a whole.
+        """Copy of the settings with some values changed, checked as a whole.
 
         Another method brings its own values of all settings that a method sets.
         """
@@ -336,7 +336,7 @@ class MethodSettings(param.Parameterized):
         return SettingError(name, getattr(self, name), allowed, remedy)
 
     def applies(self, name: str) -> bool:
-        """Check whether a setting changes anything under the present values."""
+        """Check whether a setting has an effect under the present values."""
         record = properties_of(self.definitions()[name])
         if record.path and not isinstance(getattr(self, record.path), str):
             return False

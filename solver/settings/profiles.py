@@ -28,14 +28,14 @@ middle."""
 
 
 def _pieces(tables: list[Rows], edges: Array) -> tuple[Array, list[Array], Indices]:
-    """Divide shares into pieces on which all tables are linear.
+    """Divide intervals at the points of tables, so that tables are linear on pieces.
 
-    `edges` are the ends of the shares, (n_shares + 1,), m.
+    `edges` are the ends of the intervals, (n_intervals + 1,), m.
 
     Returns
     -------
     Ends of the pieces, (n_pieces + 1,), m; values of each table there, (n_pieces + 1,);
-    and the first piece of each share, (n_shares,).
+    and the first piece of each interval, (n_intervals,).
     """
     points = np.concatenate([np.array(table)[:, 0] for table in tables])
     ends: Array = np.union1d(edges, points[(points > edges[0]) & (points < edges[-1])])
@@ -44,14 +44,14 @@ def _pieces(tables: list[Rows], edges: Array) -> tuple[Array, list[Array], Indic
 
 
 def shares_of(nodes: Array) -> Array:
-    """Ends of the shares of nodes, (n_nodes + 1,), m, halfway between the nodes."""
+    """Ends of tributary lengths, (n_nodes + 1,), m, halfway between the nodes."""
     return np.concatenate([nodes[:1], nodes[:-1] + 0.5 * np.diff(nodes), nodes[-1:]])
 
 
 def means(tables: list[Rows], edges: Array) -> Array:
-    """Mean over every share of the product of one or two tables, (n_shares,).
+    """Mean of the product of one or two tables on every interval, (n_intervals,).
 
-    `edges` are the ends of the shares, (n_shares + 1,), m.
+    `edges` are the ends of the intervals, (n_intervals + 1,), m.
     """
     ends, values, first = _pieces(tables, edges)
     left = math.prod(each[:-1] for each in values)
@@ -63,9 +63,9 @@ def means(tables: list[Rows], edges: Array) -> Array:
 
 
 def harmonic_means(table: Rows, edges: Array) -> Array:
-    """Harmonic mean of a table over every share, (n_shares,).
+    """Harmonic mean of a table on every interval, (n_intervals,).
 
-    `edges` are the ends of the shares, (n_shares + 1,), m.
+    `edges` are the ends of the intervals, (n_intervals + 1,), m.
     """
     ends, (values,), first = _pieces([table], edges)
     change = np.diff(values) / values[:-1]
@@ -100,7 +100,7 @@ def gap_at(table: Rows, nodes: Array) -> Array:
 
 
 def off_nodes(table: Rows, length: float, pieces: int) -> Array:
-    """Distances of a table's points from the line through the nodes, (n_points,), m.
+    """Distances of a table's points from the line between nodes, (n_points,), m.
 
     There are as many `pieces` between evenly spaced nodes over the length, m. Points
     outside the length have a distance of zero.

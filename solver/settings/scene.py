@@ -37,7 +37,7 @@ class Icon(NamedTuple):
 
 
 class Settings(LoadSettings):
-    """Settings of a scene: of the method, of friction and of time, and its own."""
+    """Settings of a scene: of method, friction, time, and of the scene itself."""
 
     length: param.Number[float]
     friction: param.Number[float]
@@ -74,7 +74,7 @@ class Settings(LoadSettings):
 
     @cached_property
     def bodies(self) -> Structure:
-        """The bodies, with all loads and supports; made once, as settings stay."""
+        """The bodies, with all loads and supports, as data."""
         raise NotImplementedError
 
     def structure(self) -> Structure:
@@ -82,11 +82,11 @@ class Settings(LoadSettings):
         return self.bodies
 
     def sentence(self) -> str:
-        """Describe bodies, loads and friction in a sentence for a newcomer."""
+        """Describe bodies, loads and friction in a sentence."""
         raise NotImplementedError
 
     def coarser(self) -> Iterator[Problem]:
-        """Yield the same problem, with one substructure, on ever coarser meshes.
+        """Yield the same problem on ever coarser meshes, without cuts.
 
         The last mesh is the coarsest one that shows a front of slip, has the same
         instants, and fits the settings. (In a strand, the broken wire's break moves to
@@ -104,7 +104,7 @@ class Settings(LoadSettings):
             yield discretise(self.on_mesh_of(coarse))
 
     def on_mesh_of(self, coarser: Self) -> Structure:
-        """Bodies of these settings on the mesh of coarser ones."""
+        """Bodies of these settings on the mesh of coarser settings."""
         return coarser.structure()
 
     def exact(
@@ -119,13 +119,13 @@ class Settings(LoadSettings):
 
     @property
     def n_jumps(self) -> int:
-        """Number of components of all contacts, which a reference condenses."""
+        """Number of jumps of all contacts: the size of a reference's matrix."""
         components = 2 if self.opens else 1
         return components * self.n_interfaces * (self.elements + 1)
 
     @property
     def contact_length(self) -> float:
-        """Largest position along the contacts, m: of a body, or of several in a row."""
+        """Largest position along the contacts, m."""
         return float(self.length)
 
     @property
@@ -135,7 +135,7 @@ class Settings(LoadSettings):
 
     @property
     def n_interfaces(self) -> int:
-        """Number of interfaces of which each may have its own mu."""
+        """Number of interfaces, each of which may have its own mu."""
         return self.n_bodies - 1
 
     def has(self, name: str) -> bool:
@@ -166,7 +166,7 @@ class Settings(LoadSettings):
         return settings
 
     def with_change(self, name: str, value: object) -> Self:
-        """Make settings with one change; lower numbers of parts that exceed it."""
+        """Copy of the settings with one change; counts of parts are lowered to fit."""
         changes = {name: value}
         for part, whole in self.PARTS.items():
             if name == whole and isinstance(value, int) and value < getattr(self, part):
@@ -175,11 +175,11 @@ class Settings(LoadSettings):
 
     @property
     def largest_counts(self) -> dict[str, int]:
-        """Largest numbers of parts as settings are, by the name of the setting."""
+        """Largest allowed number of each kind of parts, by the name of its setting."""
         return {part: getattr(self, whole) for part, whole in self.PARTS.items()}
 
     def check_together(self) -> None:
-        """Refuse more parts than elements or wires, and fields beyond memory."""
+        """Refuse more parts than elements or wires, and fields beyond the memory."""
         super().check_together()
         for part, whole in self.PARTS.items():
             largest = getattr(self, whole)
@@ -192,7 +192,7 @@ class Settings(LoadSettings):
         self._check_field()
 
     def _check_field(self) -> None:
-        """Refuse more instants than a field over all nodes can have."""
+        """Refuse more instants than a field of all nodes can have in memory."""
         largest = LARGEST_FIELD // self.n_nodes
         if self.n_instants <= largest:
             return

@@ -43,7 +43,7 @@ class SettingError(RefusedError):
 
 
 def allowed(definition: Parameter) -> str:
-    """Words on the values that a setting takes."""
+    """Description of the allowed values of a setting."""
     if isinstance(definition, CurveParameter):
         return f"{', '.join(definition.presets)}, or {_allowed_rows(definition)}"
     if isinstance(definition, TextParameter):
@@ -57,7 +57,7 @@ def allowed(definition: Parameter) -> str:
 
 
 def _allowed_rows(definition: CurveParameter) -> str:
-    """Words on the rows of a table."""
+    """Description of the allowed rows of a table."""
     if definition.is_path:
         return f"pairs [[{', '.join(definition.columns)}], ...]"
     heads = []
@@ -70,7 +70,7 @@ def _allowed_rows(definition: CurveParameter) -> str:
 
 
 def _allowed_numbers(definition: Any) -> str:
-    """Words on the range of a number."""
+    """Description of the range of a number."""
     low, high = definition.bounds
     unit = properties_of(definition).unit
     minimum = f"{plain(low)} {unit}".strip()
@@ -89,7 +89,7 @@ def _allowed_numbers(definition: Any) -> str:
 def unknown_setting(
     name: str, value: object, scene: str, known: Mapping[str, Parameter]
 ) -> SettingError:
-    """Refusal of an unknown name, with settings of similar names and their meaning."""
+    """Refusal of an unknown name, with the most similar settings and their meaning."""
     can = f"a setting of {scene}"
     if name in REMOVED:
         return SettingError(
@@ -106,7 +106,7 @@ def unknown_setting(
 
 
 def _likeness(name: str, other: str, definition: Parameter) -> float:
-    """Likeness of a name to a setting in spelling, in words, and in its meaning."""
+    """Similarity of a name to a setting: in spelling, in words, in meaning."""
     spelling = difflib.SequenceMatcher(None, name.lower(), other).ratio()
     words = set(name.lower().split("_"))
     # People mistype a name, turn its words round, or call a setting by its meaning.
@@ -160,12 +160,12 @@ Refuse = Callable[[str], SettingError]
 
 
 def _refusing(definition: Parameter, name: str, value: object) -> Refuse:
-    """Make the function from a remedy to the refusal of a value."""
+    """Function that makes the refusal of a value from a remedy."""
     return lambda remedy: SettingError(name, value, allowed(definition), remedy)
 
 
 def _checked_curve(definition: CurveParameter, name: str, value: object) -> str | Rows:
-    """Preset, or rows of numbers; refuse others."""
+    """Name of a preset, or rows of numbers; refuse other values."""
     if isinstance(value, str) and value in definition.presets:
         return value
     refuse = _refusing(definition, name, value)
@@ -187,7 +187,7 @@ def _checked_curve(definition: CurveParameter, name: str, value: object) -> str 
 def _checked_row(
     definition: CurveParameter, name: str, value: Sequence[Any], number: int
 ) -> tuple[float, ...]:
-    """Numbers of a row of a table, by the row's number from 1 on; refuse others."""
+    """Numbers of a row of a table; refuse other values with the row's number from 1."""
     refuse = _refusing(definition, name, value)
     row = value[number - 1]
     n_columns = len(definition.columns)
@@ -221,7 +221,7 @@ def _checked_row(
 
 
 def parse(text: str) -> object:
-    """Value of a setting from text, as typed on a command line or in an address."""
+    """Parse a value from text, as typed on a command line or in an address."""
     try:
         table: dict[str, object] = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):

@@ -1,4 +1,4 @@
-"""Runs beside a measured loop, over the fitted settings on their scales z."""
+"""Runs compared with a measured loop, as functions of the fitted settings' z."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def fittable(settings: Settings) -> list[str]:
 
 
 def _why_not(settings: Settings, name: str) -> str:
-    """Reason why a setting cannot be fitted; empty where it can."""
+    """Reason why a setting cannot be fitted, or ""."""
     definition = settings.definitions().get(name)
     if definition is None:
         return "there is no such setting"
@@ -68,7 +68,7 @@ def _why_not(settings: Settings, name: str) -> str:
 
 
 def scale_of(settings: Settings, name: str) -> tuple[float, float, float, float]:
-    """Start and size of the scale on which a setting is fitted, and its bounds, in SI.
+    """Start and size of the scale of a fitted setting, and its bounds, in SI.
 
     The size is 0 of a logarithmic scale. A setting that is no number, or does not
     change the solution, is refused.
@@ -90,7 +90,7 @@ def scale_of(settings: Settings, name: str) -> tuple[float, float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class ComparedRun:
-    """A run beside a measured loop.
+    """A run compared with a measured loop.
 
     Attributes
     ----------
@@ -117,7 +117,7 @@ class ComparedRun:
 
 
 class ComparedRuns:
-    """Runs over z beside a measured loop, each from the states of the run before.
+    """Runs over z compared with a measured loop, each started from the last one.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ class ComparedRuns:
         self.first = self.nearest = self.run(np.zeros(len(names)))
 
     def _on_scale(self, values: Array) -> Array:
-        """The z of values of the settings in SI, shape (p,)."""
+        """Scaled settings z, shape (p,), from values in SI."""
         # Both scales are computed for all settings, and one of them means nothing.
         with np.errstate(divide="ignore", invalid="ignore"):
             in_logarithm = np.log(values / self._start)
@@ -174,7 +174,7 @@ class ComparedRuns:
         return np.asarray(np.where(self.in_decades, in_logarithm, in_size))
 
     def values(self, z: Array) -> Array:
-        """Values of the settings at a place z, shape (p,), in SI."""
+        """Values of the settings at z, shape (p,), in SI."""
         with np.errstate(over="ignore"):
             in_logarithm = self._start * np.exp(z)
             in_size = self._start + self._size * z
@@ -188,7 +188,7 @@ class ComparedRuns:
         return dict(zip(self.names, values, strict=True))
 
     def run(self, z: Array) -> ComparedRun:
-        """Run at a place z, shape (p,).
+        """Run at z, shape (p,).
 
         Raises
         ------
@@ -213,7 +213,7 @@ class ComparedRuns:
         return ComparedRun(values, finished, beside, differences)
 
     def differences(self, z: Array) -> Array:
-        """Differences of the run at z, (p,): shape (n_rows,), shares of the range.
+        """Differences at z, (p,), over the range of the loop, shape (n_rows,).
 
         NaN where there is no run, so that no step goes there.
         """
@@ -264,19 +264,19 @@ class ComparedRuns:
         return (known[last] - known[first]) / ((last - first) or 1.0)
 
     def holds(self, z: Array) -> bool:
-        """Check whether a place, (p,), lies within the bounds of all settings."""
+        """Check whether z, (p,), lies within the bounds of all settings."""
         low, high = self.bounds
         return bool(((low <= z) & (z <= high)).all())
 
     def misfit(self, z: Array) -> float:
-        """Sum of the squared differences at z, (p,); infinite where there is no run."""
+        """Sum of the squared differences at z, (p,); infinite without a run."""
         found = float(np.sum(self.differences(z) ** 2))
         if math.isfinite(found):
             return found
         return math.inf
 
     def of_mesh(self, z: Array) -> float:
-        """Norm of the change of differences at z, (p,), on elements of half the size.
+        """Norm of the change of differences at z, (p,), with elements of half the size.
 
         0 where no such run converges.
         """
@@ -295,7 +295,7 @@ class ComparedRuns:
         return 0.0
 
     def coarse(self) -> Array:
-        """First place, shape (p,): by large steps in one setting after another."""
+        """Initial z, shape (p,): by large steps in one setting after another."""
         best = np.zeros(len(self.names))
         for setting in range(len(best)):
             middle = best
@@ -305,7 +305,7 @@ class ComparedRuns:
         return best
 
     def _stepped(self, best: Array, middle: Array, setting: int, step: float) -> Array:
-        """Best place found by equal steps of a setting from the middle, shape (p,).
+        """Best z, shape (p,), of equal steps of a setting from the middle.
 
         Steps go on while the misfit falls, and at first where it does not change, as
         where the start lets nothing slip.
@@ -337,7 +337,7 @@ class ComparedRuns:
         return best
 
     def solve(self, z: Array, pull: Array) -> Array:
-        """Place of the least squares, shape (p,), with a pull to the start.
+        """Least-squares z, shape (p,), with a pull to the start.
 
         Parameters
         ----------
@@ -359,7 +359,7 @@ class ComparedRuns:
         return np.asarray(found.x)
 
     def across(self, z: Array, along: Array, bounds: Array) -> Array:
-        """Place of the least squares across a direction, shape (p,).
+        """Least-squares z across a direction, shape (p,).
 
         Parameters
         ----------

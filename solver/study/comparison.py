@@ -81,7 +81,7 @@ class OtherResults:
     contacts: NDArray[np.str_] | None = None
 
     def on(self, interface: str, known: Collection[str]) -> OtherResults:
-        """Rows of one of the known interfaces; all where no row names a known one."""
+        """Rows of an interface; all rows if no row names a known interface."""
         if self.contacts is None or not np.isin(self.contacts, list(known)).any():
             return self
         rows = self.contacts == interface
@@ -95,7 +95,7 @@ class OtherResults:
 
 
 def results_in(table: Table, settings: Settings) -> OtherResults:
-    """Read the results of another program for a scene in a table.
+    """Read the results of another program for a scene from a table.
 
     The head names the columns x (m), t (s), and friction force or displacement, with
     units if they are others; where several interfaces have rows, a column contact names
@@ -140,7 +140,7 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
 
 
 def _with_contacts(table: Table) -> tuple[Table, NDArray[np.str_] | None]:
-    """Take the column of contacts out of a table: name of every row, shape (n_rows,).
+    """Split off the column of interfaces: its names, shape (n_rows,), and the rest.
 
     What was taken out is not said to be passed over.
     """
@@ -172,7 +172,7 @@ def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> Reading:
 
 
 def _columns(table: Table) -> tuple[str, list[TableColumn]]:
-    """Quantity that the head names, and the columns of x, of t and of the quantity."""
+    """Quantity that the head names, and columns of x, t and the quantity."""
     if not any(column.quantities[0] for column in table.columns):
         raise table.refuse(
             "name its columns in the first line, as in x,t,friction force"
@@ -316,7 +316,7 @@ class Comparison:
 
 
 def weights_of(positions: Array, times: Array) -> Array:
-    """Weight of every row, as the module defines it, shape (n_rows,).
+    """Weight of every row, as the module's docstring defines it, shape (n_rows,).
 
     Positions, m, and times, s, have the same shape.
     """
@@ -346,12 +346,12 @@ def _covers(grid: Array, places: Array) -> Flags:
 
 
 def _interpolated(field: Array, at: Array) -> Array:
-    """Field, (n_points, n_instants), at fractional numbers of both, (2, n): (n,)."""
+    """Interpolate a field, (n_points, n_instants), at fractional indices, (2, n)."""
     return np.asarray(scipy.ndimage.map_coordinates(field, at, order=1, mode="nearest"))
 
 
 def _halves(places: Array, joined: Flags | bool = True) -> Array:
-    """Half of the distances to both neighbours, shape (n,).
+    """Half of the distance between both neighbours, shape (n,).
 
     Parameters
     ----------

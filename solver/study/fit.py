@@ -1,4 +1,4 @@
-"""Fit of settings to a measured loop, and the margins that the loop leaves.
+"""Fit of settings to a measured loop, with margins.
 
     fitted = fit(settings, measured, ["friction", "contact_stiffness"])
 
@@ -60,7 +60,7 @@ PULLS = 4
 
 @dataclass(frozen=True)
 class Combination:
-    """A product of powers of settings that is known while each of them is not.
+    """A product of powers of settings, determined although the settings are not.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class Combination:
 
     @property
     def error(self) -> float:
-        """Standard error as a share of the value: half the way to the farther end."""
+        """Relative standard error: half the distance to the farther end."""
         farther = max(self.upper - self.value, self.value - self.lower)
         return farther / (2.0 * self.value)
 
@@ -144,7 +144,7 @@ def fit(
     names: Sequence[str],
     watch: Callable[[int, ComparedRun], object] = lambda runs, nearest: None,
 ) -> Fit:
-    """Find the settings under which a run comes nearest to a measured loop.
+    """Find the settings whose run is nearest to a measured loop.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ def fit(
 
 
 def _check_rows(runs: ComparedRuns, measured: MeasuredLoop) -> None:
-    """Refuse a loop with too few rows in the run for the number of settings."""
+    """Refuse a loop with fewer rows during the run than settings need."""
     rows = len(runs.first.differences)
     count = len(runs.names)
     if rows <= count + 1:
@@ -199,7 +199,7 @@ def _check_rows(runs: ComparedRuns, measured: MeasuredLoop) -> None:
 
 
 def _explored(runs: ComparedRuns) -> tuple[Valley, list[LikelihoodProfile]]:
-    """Valley of the nearest run that is found, and the profiles of all settings."""
+    """Valley of the nearest run, and the profiles of all settings."""
     settings = np.eye(len(runs.names))
     # A slight pull, so that the least squares have one solution.
     z = runs.solve(runs.coarse(), LOOSE * settings)
@@ -215,7 +215,7 @@ def _explored(runs: ComparedRuns) -> tuple[Valley, list[LikelihoodProfile]]:
 
 
 def _blind(valley: Valley, is_known: Flags) -> Array:
-    """Directions in which a valley goes on, orthonormal, shape (n, p).
+    """Directions without a limit in a valley, orthonormal, shape (n, p).
 
     `is_known`, (p,), says which settings are known.
     """
@@ -233,7 +233,7 @@ def _blind(valley: Valley, is_known: Flags) -> Array:
 
 
 def _near_start(valley: Valley, blind: Array) -> Array:
-    """Place, (p,), on the floor of a valley nearest to the start in z = 0.
+    """Point z, (p,), on the floor of a valley, nearest to the start z = 0.
 
     The place moves along the directions `blind`, (n, p), in which the valley goes on.
     """
@@ -263,7 +263,7 @@ def _margins(valley: Valley, profiles: list[LikelihoodProfile]) -> tuple[Array, 
 def _known_combinations(
     valley: Valley, z: Array, blind: Array, is_known: Flags
 ) -> list[Combination]:
-    """Known combinations around a place, in a wide box or else in a smaller one.
+    """Determined combinations around z, in a wide box or else in a smaller one.
 
     Parameters
     ----------
@@ -290,7 +290,7 @@ def _known_combinations(
 def _combinations(
     valley: Valley, distance: float, blind: Array, is_known: Flags
 ) -> list[Combination]:
-    """Combinations that are known of settings that are not, up to a distance in z.
+    """Determined combinations of undetermined settings, up to a distance in z.
 
     `blind`, (n, p), are the directions in which the valley goes on, and `is_known`,
     (p,), says which settings are known.
@@ -320,7 +320,7 @@ def _combinations(
 def _combination(
     valley: Valley, distance: float, moves: Array, powers: Array
 ) -> Combination | None:
-    """A combination of powers, (p,), if it is known along moves on a floor, (n, p)."""
+    """A combination of powers, (p,), if moves on the floor, (n, p), determine it."""
     profile = valley.profile(powers)
     # A floor is bent, and no product of powers is the same all along it.
     along = moves @ powers
@@ -345,7 +345,7 @@ def _combination(
 
 
 def _correlation(jacobian: Array, blind: Array, is_known: Flags) -> Array:
-    """Correlation of the settings that are known, shape (p, p); NaN of others.
+    """Correlation of the determined settings, shape (p, p); NaN of others.
 
     Parameters
     ----------
@@ -370,7 +370,7 @@ def _correlation(jacobian: Array, blind: Array, is_known: Flags) -> Array:
 
 
 def _echelon(rows: Array) -> Array:
-    """Reduced echelon form of rows, shape (n, p): the same space, rounded.
+    """Reduced row echelon form of rows, shape (n, p), rounded.
 
     Each row has 1 in a column in which all other rows have 0.
     """

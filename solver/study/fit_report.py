@@ -79,7 +79,7 @@ def messages(fit: Fit, called: Mapping[str, str] | None = None) -> list[str]:
 
 
 def _lost(fit: Fit, called: Mapping[str, str]) -> list[str]:
-    """Sentence on settings that are not determined; none where all are."""
+    """Sentence on settings that are not determined, if any."""
     lost = []
     for name, error in zip(fit.names, fit.errors, strict=True):
         if math.isinf(error):
@@ -99,7 +99,7 @@ def _lost(fit: Fit, called: Mapping[str, str]) -> list[str]:
 
 
 def _for_the_mesh(fit: Fit, called: Mapping[str, str]) -> list[str]:
-    """Sentence on settings that the mesh hides; none where there is no such setting."""
+    """Sentence on settings that errors of the mesh hide, if any."""
     hidden = []
     for name, is_hidden in zip(fit.names, fit.for_the_mesh, strict=True):
         if is_hidden:
@@ -114,7 +114,7 @@ def _for_the_mesh(fit: Fit, called: Mapping[str, str]) -> list[str]:
 
 
 def _known(combination: Combination, called: Mapping[str, str]) -> str:
-    """Sentence on a known combination of settings that are not known by themselves."""
+    """Sentence on a determined combination of undetermined settings."""
     if math.isnan(combination.value):
         parts = [called[name] for name in combination.powers]
         return f"Only a combination of {listed(parts)} is known."
@@ -140,7 +140,7 @@ def _product(combination: Combination, called: Mapping[str, str]) -> str:
 
 
 def _bounds(fit: Fit, called: Mapping[str, str]) -> list[str]:
-    """Sentences on settings of which one end alone is known."""
+    """Sentences on settings of which only one end is known."""
     sentences = []
     for name, lower, upper in zip(fit.names, fit.lower, fit.upper, strict=True):
         unit = properties_of(fit.settings.definitions()[name]).unit
@@ -166,7 +166,7 @@ def _distances(fit: Fit, measured: MeasuredLoop) -> str:
 
 
 def _percent(distance: float) -> str:
-    """A distance in per cent; what is rounding has no digits."""
+    """Text of a distance in per cent, without digits of rounding."""
     if 0.0 < distance < ROUNDING:
         return f"less than {100.0 * ROUNDING:g} %"
     return f"{100.0 * distance:.4g} %"

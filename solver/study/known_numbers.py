@@ -1,4 +1,4 @@
-"""Known numbers of runs beside computed ones: the functions of `known_numbers.toml`."""
+"""Known numbers and computed ones: the functions named in `known_numbers.toml`."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ Number = tuple[str, str, float, float]
 
 
 def loop(answer: SolvedCase) -> Iterator[Number]:
-    """Largest and last value that a loop finds, and its work in a cycle.
+    """Largest and last value of the found quantity of a loop, and its work in a cycle.
 
     The cycle begins at the first largest value of the prescribed quantity.
     """
@@ -100,12 +100,12 @@ def _values_of_loop(
 
 
 def _area(force: Array, over: Array, start: int) -> float:
-    """Area under a force over its abscissa, (n_instants,) each, from an instant on."""
+    """Work of a force over its abscissa, (n_instants,) each, from an instant on."""
     return float(abs(np.trapezoid(force[start:], over[start:])))
 
 
 def opening(answer: SolvedCase) -> Iterator[Number]:
-    """Opening of the break of a wire."""
+    """Opening of the break of a wire, known and found."""
     strand = answer.settings.structure()
     assert isinstance(strand, Rods)
     exact = broken_wire(strand)
@@ -122,14 +122,14 @@ def opening(answer: SolvedCase) -> Iterator[Number]:
 
 
 def _half_plane(answer: SolvedCase, total: float) -> HalfPlane:
-    """Closed form of a cylinder pressed on a half-plane by a total force, N/m."""
+    """Closed form of a cylinder on a half-plane under a total force, N/m."""
     settings = answer.settings
     modulus = settings.young / (1.0 - settings.poisson**2)
     return HalfPlane(total, settings.radius, modulus)
 
 
 def _points(answer: SolvedCase, force: Array) -> tuple[Array, Array]:
-    """Lengths of the points of a support, and their distances from a force's middle.
+    """Tributary lengths of a support's points, and distances from a force's centre.
 
     The force has shape (n_points,), and so have both results, m.
     """
@@ -217,7 +217,7 @@ def shoe(answer: SolvedCase) -> Iterator[Number]:
 
 
 def driven_by_fluid(answer: SolvedCase) -> Iterator[Number]:
-    """Front of slip that a fluid drives, over the length of its diffusion."""
+    """Front of fluid-driven slip over the diffusion length."""
     settings = answer.settings
     late = slice(settings.instants // 2, None)
     diffused = np.sqrt(4.0 * settings.diffusivity * settings.times()[late])
@@ -254,7 +254,7 @@ def _front(positions: Array, slip: Array) -> float:
 
 
 def growing_strength(answer: SolvedCase) -> Iterator[Number]:
-    """Slip under a strength that grows from the middle, where the load exceeds it.
+    """Slip of a zone whose strength grows from the middle beyond the load.
 
     The closed form leaves out that the last node that slips stands for half an element
     that sticks.
@@ -273,7 +273,7 @@ def growing_strength(answer: SolvedCase) -> Iterator[Number]:
 
 
 def joint(answer: SolvedCase) -> Iterator[Number]:
-    """Slip at the well of a fault that gives way like a joint, and its stiffness.
+    """Slip at the well of a fault with compliant contact, and its stiffness.
 
     Both bodies are in series with the joint, and their far sides do not move.
     """
@@ -299,7 +299,7 @@ def _forces(answer: SolvedCase) -> tuple[float, float]:
 
 
 def pile(answer: SolvedCase) -> Iterator[Number]:
-    """Shear force of a pile of bricks, which slides at its top, or tips about its toe.
+    """Shear force of a pile of bricks, which slides at the top, or tips.
 
     About the toe the pressing force, and the weight of the bricks, have a lever of half
     a length.
@@ -327,7 +327,7 @@ def weighed_wall(answer: SolvedCase) -> Iterator[Number]:
 
 
 def corbelled_wall(answer: SolvedCase) -> Iterator[Number]:
-    """Force on ground that has settled below n bricks of a wall in running bond.
+    """Force on settled ground below n bricks of a wall in running bond.
 
     Each course reaches over the gap by half a brick at both ends, held down by what
     presses on it: n bricks of the lowest course fall with the ground, n - 1 of the next
@@ -343,7 +343,7 @@ def corbelled_wall(answer: SolvedCase) -> Iterator[Number]:
 
 
 def arch_thrust(answer: SolvedCase) -> Iterator[Number]:
-    """Thrust of an arch over its weight, after an abutment has moved far enough.
+    """Thrust of an arch over its weight, after a large movement of an abutment.
 
     The least where it has moved apart, the largest where it has moved inwards.
     """
@@ -358,7 +358,7 @@ def arch_thrust(answer: SolvedCase) -> Iterator[Number]:
 
 
 def tensions(answer: SolvedCase) -> Iterator[Number]:
-    """Tension of a band at its ends, its largest and its least, in the end."""
+    """Tension of a band at the end of the run: at both ends, largest and smallest."""
     curves = answer.settings.exact(answer.problem, answer.fields)
     (exact,) = [curve for curve in curves if curve.of == "axial force"]
     band = answer.settings.structure()
@@ -372,7 +372,7 @@ def tensions(answer: SolvedCase) -> Iterator[Number]:
 
 
 def pressed_wires(answer: SolvedCase) -> Iterator[Number]:
-    """Largest pressure, and half-width of contact, where two wires press the most."""
+    """Largest pressure, and half-width, of the most loaded contact of two wires."""
     settings = answer.settings
     joints = settings.structure().joints
     forces = {}
@@ -407,7 +407,7 @@ def moved_end(answer: SolvedCase) -> Iterator[Number]:
 
 
 def on_slope(answer: SolvedCase) -> Iterator[Number]:
-    """Part of the weight that presses on a slope where it is steepest.
+    """Normal force over the weight on a slope at its steepest.
 
     The pull of a spring along the slope does not change it.
     """

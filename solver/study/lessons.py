@@ -70,7 +70,7 @@ class Claim:
     expected: str
 
     def tested(self, run: FinishedRun, share: float) -> tuple[bool, str]:
-        """Test the claim in a run: whether it holds, and a sentence on the values.
+        """Test the claim in a run: return whether it holds, and a sentence.
 
         A quantity of one instant has to be as expected at the instant of the plots,
         too, which is at a `share` of the interval.
@@ -148,7 +148,7 @@ class Lesson:
 
 
 def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
-    """Test the claims of a lesson: whether each holds, and a line on it.
+    """Test the claims of a lesson; return whether each holds, and a line of text.
 
     Claims with equal settings share a run.
     """
@@ -177,7 +177,7 @@ def lesson_from_file(path: Path) -> Lesson:
 
 
 def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
-    """Lesson of the table of a file; tables that are no lesson are refused."""
+    """Make a lesson from the table of a file; refuse other tables."""
     kept = {
         "scene": str,
         "settings": dict,
@@ -241,7 +241,7 @@ def _check_curve(lesson: Lesson) -> None:
 
 
 def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
-    """Paragraphs between empty lines; unknown placeholders are refused."""
+    """Split a text into paragraphs; refuse unknown placeholders."""
     for placeholder in re.findall(r"\{(.*?)\}", text):
         kind, _, name = placeholder.partition(":")
         if kind == "value":
@@ -255,7 +255,7 @@ def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Claim]:
-    """Claims of the tables of checkpoints; other entries are refused."""
+    """Make claims from the tables of checkpoints; refuse other entries."""
     remedy = "say what the lesson claims"
     require(bool(values), "checkpoints", values, "at least one", remedy)
     for number, entry in enumerate(values, start=1):
@@ -269,7 +269,7 @@ def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Claim]:
 
 
 def _expected(entry: Mapping[str, Any]) -> tuple[float, float, str]:
-    """Low and high end of the expected range, and the range in words.
+    """Low and high end of the expected range, and the text of the range.
 
     A range is given by a number and its tolerance, by two numbers, or by "never".
     """

@@ -74,7 +74,7 @@ class MeasuredLoop:
     bare: tuple[str, str] = ("", "")
 
     def unit_doubts(self, displacement: Array, force: Array) -> list[str]:
-        """Sentences on columns that are some thousand times off a run's loop.
+        """Sentences on columns that seem thousand times too large or small for a run.
 
         Displacement and force of the run have shape (n_instants,), in the units of the
         loop. Only columns without a unit in the file are doubted.
@@ -113,7 +113,7 @@ def csv_of(columns: Mapping[str, Array]) -> str:
 def columns_of(
     table: Table, axes: Axes
 ) -> tuple[TableColumn | None, TableColumn, TableColumn]:
-    """Columns of time (None without one), displacement and force, as the head has them.
+    """Columns of time (or None), displacement and force, by the head of a table.
 
     A table that does not name displacement and force is refused.
     """
@@ -253,7 +253,7 @@ class LoopComparison:
         return SettingError("the measured loop", self.measured.source, can, remedy)
 
     def drive_messages(self, distance: float) -> list[str]:
-        """Sentence on a prescribed path that is at a distance from the measured one."""
+        """Sentence on a prescribed path that differs from the measured one."""
         far = f"{100.0 * distance:.2g} % of its range from the measured"
         message = f"{self.given} of the run is {far}: give the run the measured path"
         if distance > ALIKE:
@@ -307,7 +307,7 @@ class LoopComparison:
         return difference / self._found_range, drive / self._given_range
 
     def _along_path(self, given: Array) -> Array:
-        """Places of the rows among the instants of a run, with fractions, (n_counted,).
+        """Fractional indices of the rows among the instants of a run, (n_counted,).
 
         `given` is the prescribed quantity of the run, shape (n_instants,).
         """
@@ -330,7 +330,7 @@ class LoopComparison:
         return places
 
     def _first_branch(self, given: Array, instants: Indices, rows: Indices) -> int:
-        """First branch of the run on which the branches of the table are laid.
+        """First branch of the run to compare with the branches of the table.
 
         Parameters
         ----------
@@ -361,7 +361,7 @@ class LoopComparison:
 
 
 def branches(path: Array) -> Indices:
-    """Start, reversals and end of a path, (n_instants,): the ends of its branches."""
+    """Indices of start, reversals and end of a path, (n_instants,)."""
     last = len(path) - 1
     turns = [turn for turn in turning_points(path) if 0 < turn < last]
     # A last swing that is too small is no branch of its own.

@@ -103,7 +103,7 @@ class ErrorCurve:
         return float(np.median(np.diff(self.seconds)))
 
     def reached(self, level: float) -> tuple[float, float] | None:
-        """Time, s, and step at which the error of the friction force is first so small.
+        """Time, s, and step at which the error of friction first meets a level.
 
         None where the method does not reach the level.
         """
@@ -207,7 +207,7 @@ def _errors(settings: Settings, distance: Distance) -> Array:
 
 
 def _append_times(passes: list[list[float]], settings: Settings, number: int) -> None:
-    """Append the times from the start to every iteration, with discretisation, s."""
+    """Append the times, s, up to every iteration, including discretisation."""
     CACHE.clear()
     start = time.perf_counter()
     problem = discretise(settings)
@@ -219,7 +219,7 @@ def _append_times(passes: list[list[float]], settings: Settings, number: int) ->
 def seconds_of(
     work: Callable[[], object], clock: Callable[[], float] = time.process_time
 ) -> float:
-    """Time of some work, s: of the processor unless another clock is given.
+    """Time of some work, s: processor time unless another clock is given.
 
     Nothing is kept from what was done before.
     """
@@ -228,7 +228,7 @@ def seconds_of(
 
 
 def latin(settings: Settings) -> Solution:
-    """Solve as the settings say, without indicators that the run does not need."""
+    """Solve by LATIN as the settings say, without unneeded indicators."""
     return solve(discretise(settings), method_of(settings), watch=False)
 
 
@@ -295,7 +295,7 @@ def times_at_sizes(settings: Settings, *, large: bool = False) -> list[TimesAtSi
 def _measured(
     settings: Settings, changes: dict[str, int], at: tuple[int, int], longest: float
 ) -> TimesAtSize:
-    """Times of both solvers at a size, or the reason why there are none."""
+    """Times of both solvers at a size, or the reason why they are missing."""
     try:
         form = forms_of(settings.replace(**changes))[FAST]
     except SettingError:

@@ -58,7 +58,7 @@ class Refinement:
 
     @property
     def _steps(self) -> tuple[float, float]:
-        """Differences from mesh to mesh; zero where all values are equal."""
+        """Differences from mesh to mesh; zero if all values are equal."""
         coarse, middle, fine = self.values
         size = max(abs(value) for value in self.values)
         # A quantity that no mesh changes has neither order nor error.
@@ -68,7 +68,7 @@ class Refinement:
 
     @property
     def order(self) -> float | None:
-        """Power of the size with which the error falls; None where there is none."""
+        """Order of convergence: power of the size in the error; None without any."""
         first, second = self._steps
         if first * second > 0.0:
             return math.log2(first / second)
@@ -76,7 +76,7 @@ class Refinement:
 
     @property
     def limit(self) -> float:
-        """Limit of the quantity; its value on the finest mesh if none is in sight."""
+        """Limit of the quantity by extrapolation; without order the finest value."""
         order = self.order
         fine = self.values[-1]
         if order is None or not LEAST_ORDER <= order <= LARGEST_ORDER:
@@ -85,7 +85,7 @@ class Refinement:
 
     @property
     def margin(self) -> float:
-        """Margin of the limit to both sides."""
+        """Margin of the limit, to either side."""
         order = self.order
         largest = max(abs(step) for step in self._steps)
         if order is None or order < LEAST_ORDER:
@@ -96,7 +96,7 @@ class Refinement:
 
     @property
     def deviation(self) -> float:
-        """Largest error of the value that is asked for, as a share of the limit."""
+        """Largest error of the run's value, as a share of the limit."""
         if not any(self._steps):
             return 0.0
         error = abs(self.values[self.own] - self.limit) + self.margin
@@ -148,7 +148,7 @@ def _three_steps(settings: Settings) -> tuple[list[Settings], int]:
 
 
 def undivided(settings: Settings) -> str:
-    """Sentence on steps that no number of instants of the study divides, or ""."""
+    """Sentence on steps that the study cannot divide, or ""."""
     three, own = _three_steps(settings)
     times = np.concatenate([[0.0], three[own].times()])
     # Numbers of the finest instants up to and before each of these.
@@ -163,7 +163,7 @@ def undivided(settings: Settings) -> str:
 
 
 def _steps_of(settings: Settings) -> int:
-    """Number of equal steps of which none is longer than the longest of a run."""
+    """Number of equal steps that are no longer than the longest step of a run."""
     longest = float(np.diff(settings.times(), prepend=0.0).max())
     return math.ceil((1.0 - EQUAL) * settings.duration / longest)
 
@@ -184,12 +184,12 @@ def _refined(settings: Settings, names: Sequence[str], factor: float) -> Setting
 
 
 def decides(settings: Settings, asked: Quantity) -> bool:
-    """Check whether a quantity is one of the result, which depends on the mesh."""
+    """Check whether a quantity depends on the mesh: not on the course of a run."""
     return asked.reads is None and asked.applies(settings)
 
 
 def value_on(settings: Settings, asked: Quantity) -> float:
-    """A quantity of the certified solution on a mesh; NaN without such a solution."""
+    """Value of a quantity in the certified solution on a mesh; NaN without one."""
     # Certified runs differ by the mesh, not by their stop rules.
     certified = settings.replace(finish="at-once")
     run = finished_run(certified, errors=False, indicators=False)
@@ -199,7 +199,7 @@ def value_on(settings: Settings, asked: Quantity) -> float:
 
 
 def size_of(settings: Settings) -> str:
-    """Numbers of elements and instants, in words."""
+    """Text of the numbers of elements and instants."""
     sizes = []
     if settings.MESH:
         counts = " x ".join(str(getattr(settings, name)) for name in settings.MESH)
@@ -243,7 +243,7 @@ def _limit_sentence(refinement: Refinement, unit: str, size: str) -> str:
 
 
 def which_to_refine(elements: Refinement, instants: Refinement) -> str:
-    """Sentence on the errors that both leave; empty where one of them is not known."""
+    """Sentence on which of both errors is larger, or "" if one is unknown."""
     if not (elements.has_values and instants.has_values):
         return ""
     if elements.deviation == instants.deviation == 0.0:

@@ -105,7 +105,7 @@ class PanelCurve:
 
 @dataclass(frozen=True, eq=False)
 class Runs:
-    """Points of a chart that each stand for a run, n of them, in order of arrival.
+    """Points of a chart, one for each of n runs, in order of arrival.
 
     Attributes
     ----------
@@ -132,7 +132,7 @@ class Runs:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """A pair of axes with curves, and the runs that the curves go through, if any."""
+    """A chart with curves, and the runs that the curves connect, if any."""
 
     title: str
     x: PanelAxis
@@ -172,7 +172,7 @@ Chart = Panel | Map
 
 @dataclass(frozen=True, eq=False)
 class PlotSection:
-    """Charts side by side, and a heading for those who cannot see them."""
+    """Charts side by side, with a heading for screen readers."""
 
     heading: str
     charts: Sequence[Chart]
@@ -198,7 +198,7 @@ VERDICTS = (
 def write_page(
     file: Path, template: str, plots: Sequence[PlotSection], **values: object
 ) -> None:
-    """Write a report as a page that needs nothing beside it.
+    """Write a report as a self-contained page.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def renderer() -> Renderer | None:
 
 
 def kind_of(text: str) -> str:
-    """Classes of a table's cell by its text: of numbers, of verdicts, or none."""
+    """CSS classes of a table's cell by its text: of numbers, of verdicts, or none."""
     if NUMBER.fullmatch(text):
         return "number"
     if text in VERDICTS:
@@ -259,7 +259,7 @@ def text_of(value: object, digits: int = 2) -> str:
 
 
 def line_of(entries: Mapping[str, object], shown: Shown) -> str:
-    """Entries of a row as a line of a console."""
+    """Line of a console for the entries of a row."""
     texts = []
     for name, (_, width) in shown.items():
         texts.append(f"{text_of(entries[name]):<{width}}")
@@ -267,7 +267,7 @@ def line_of(entries: Mapping[str, object], shown: Shown) -> str:
 
 
 def head_of(shown: Shown) -> str:
-    """Heads of columns as a line of a console."""
+    """Line of a console for the heads of columns."""
     return line_of({name: head for name, (head, _) in shown.items()}, shown)
 
 
@@ -280,7 +280,7 @@ def write_csv(
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> str:
-    """Table in columns for a console."""
+    """Lines of a table with aligned columns for a console."""
     widths = []
     for column in zip(*rows, strict=True):
         widths.append(max(len(cell) for cell in column))

@@ -82,7 +82,7 @@ def _convergence(title: str, quantity: str, curves: list[PanelCurve]) -> Panel:
 def _over_iterations(
     runs: PaperRuns, name: str, word: str, line: Line
 ) -> list[PanelCurve]:
-    """Curves of a scalar of the records of both versions."""
+    """Curves of a scalar of the records of both versions, over iterations."""
     numbers = np.arange(1.0, SHOWN + 1.0)
     curves = []
     for hue, version in enumerate(VERSIONS, start=1):
@@ -331,7 +331,7 @@ def figure_8(runs: PaperRuns) -> PaperFigure:
 
 
 def _beside_svd(exact: Decomposition, modes: Array) -> list[PanelCurve]:
-    """Curves of modes, (n_points, n_modes), beside the dotted SVD modes.
+    """Curves of modes, (n_points, n_modes), and of the SVD modes (dotted).
 
     The modes are normalised, with the signs of the SVD modes.
     """

@@ -1,4 +1,4 @@
-"""Runs behind the paper's figures, and the claims and findings beside each figure."""
+"""Runs for the paper's figures, with claims and findings for each figure."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def paper_runs() -> PaperRuns:
 
 @dataclass(frozen=True)
 class Finding:
-    """A measured answer to a claim: a sentence with numbers, and whether it holds."""
+    """Measured result on a claim: a sentence with numbers, and whether it holds."""
 
     text: str
     holds: bool
@@ -138,7 +138,7 @@ class PaperFigure:
 
     @property
     def sentences(self) -> list[str]:
-        """Findings, each with what it says of the claim."""
+        """Findings, each with its verdict on the claim."""
         return [f"{finding.text} {SAYS[finding.holds]}" for finding in self.findings]
 
     @property

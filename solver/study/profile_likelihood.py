@@ -1,4 +1,4 @@
-"""Profile likelihood: how far settings may go from the nearest run.
+"""Profile likelihood: ranges of settings that are compatible with a measured loop.
 
 The misfit is |r(z)|^2, r the differences to a measured loop, (n_rows,), and z the
 settings on their scales, (p,). Along a direction w, a setting alone or a combination,
@@ -67,7 +67,7 @@ PLACES = 16
 
 
 class LowerPlace(Exception):  # noqa: N818
-    """A place z, shape (p,), with a lower misfit than the nearest run so far."""
+    """Signal: z, shape (p,), has a lower misfit than the nearest run so far."""
 
     def __init__(self, z: Array) -> None:
         super().__init__("there is a lower place")
@@ -76,7 +76,7 @@ class LowerPlace(Exception):  # noqa: N818
 
 @dataclass(frozen=True)
 class ProfileSide:
-    """Side of a profile: places along a direction, and the misfit there.
+    """Side of a profile: points along a direction, and the misfit there.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ class ProfileSide:
     is_at_bound: bool
 
     def end(self, level: float) -> float:
-        """Distance from which on the misfit stays above a level; infinite if not seen.
+        """Distance beyond which the misfit stays above a level; infinite if not found.
 
         Between two places the root of the rise is taken as straight.
         """
@@ -134,12 +134,12 @@ class LikelihoodProfile:
 
     @property
     def is_known(self) -> bool:
-        """Check that both ends are nearer than `LIMIT`, with the mesh as noise."""
+        """Check whether both ends are nearer than `LIMIT`, also for mesh errors."""
         return max(self.below.end(self.doubt), self.above.end(self.doubt)) < LIMIT
 
     @property
     def is_known_to_noise(self) -> bool:
-        """Check that both ends are nearer than `LIMIT`, if the mesh were exact."""
+        """Check whether both ends are nearer than `LIMIT` for an exact mesh."""
         return max(self.ends(self.noise)) < LIMIT
 
     def ends(self, level: float | None = None) -> tuple[float, float]:
@@ -156,14 +156,14 @@ class LikelihoodProfile:
 
 
 def _or_open(end: float) -> float:
-    """Distance to an end nearer than `LIMIT`; infinite for one farther away."""
+    """Distance to an end; infinite beyond `LIMIT`."""
     if end < LIMIT:
         return end
     return math.inf
 
 
 class Valley:
-    """Misfit around a place of least squares.
+    """Misfit around a minimum of least squares.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ class Valley:
         self._look()
 
     def around(self, z: Array, distance: float) -> Valley:
-        """The same valley from another centre on its floor, within a box around it.
+        """The valley from another centre on its floor, within a box around the centre.
 
         The centre has shape (p,); the box reaches a distance in z in all settings.
         """
@@ -224,7 +224,7 @@ class Valley:
         return moved
 
     def _look(self) -> None:
-        """Find the Jacobian and the covariance at the centre."""
+        """Compute the Jacobian and the covariance at the centre."""
         self.jacobian = self.runs.jacobian(self.z, BROAD)
         # Where the slope tells nothing, a step is as long as the search.
         weak = np.eye(len(self.z)) / WALK**2
@@ -234,7 +234,7 @@ class Valley:
 
     @property
     def moves(self) -> Array:
-        """Moves from the centre to places seen within doubt, shape (n_places, p)."""
+        """Moves from the centre to points of about equal misfit, (n_points, p)."""
         return np.array(self._inside) - self.z
 
     def walk(self) -> None:
@@ -252,7 +252,7 @@ class Valley:
         return LikelihoodProfile(below, above, self.noise, self.doubt)
 
     def _seen(self, along: Array, limit: float) -> ProfileSide | None:
-        """Side along a direction, (p,), that is already known to be open.
+        """Side along a direction, (p,), if it is already known to be open.
 
         It is open if a place beyond the limit has been seen within doubt. None
         otherwise.
@@ -303,7 +303,7 @@ class Valley:
         )
 
     def _rise(self, place: Array) -> float:
-        """Misfit of a place, (p,), less the least one; places within doubt are kept.
+        """Misfit at a point, (p,), less the minimum; stores points of about equal one.
 
         Raises
         ------
@@ -318,7 +318,7 @@ class Valley:
         return rise
 
     def _growth(self, rise: float) -> float:
-        """Next step over the distance so far: past a level, if the rise is square."""
+        """Factor on the distance to pass the next level, if misfit is quadratic."""
         if rise <= self.noise:
             level = self.noise
         else:
@@ -339,7 +339,7 @@ class Valley:
         return float(abs(end - self.z[pivot]) / abs(along[pivot]))
 
     def _place(self, along: Array, distance: float, ahead: Array, last: Array) -> Array:
-        """Lowest place at a distance along a direction, shape (p,).
+        """Point of lowest misfit at a distance along a direction, shape (p,).
 
         Parameters
         ----------
@@ -363,7 +363,7 @@ class Valley:
         return min(found, other, key=self.runs.misfit)
 
     def _lowest(self, along: Array, distance: float, start: Array) -> Array:
-        """Lowest place at a distance along a direction; all have shape (p,)."""
+        """Point of lowest misfit at a distance along a direction; all of shape (p,)."""
         start = np.clip(start, *self._bounds)
         pivot = int(np.abs(along).argmax())
         # The setting that counts most brings the start to the distance.

@@ -1,4 +1,4 @@
-"""The proof: every known number beside the computed one, as CSV and an HTML page."""
+"""The proof: known and computed numbers of all cases, as CSV and an HTML page."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class KnownCase:
 
     @property
     def address(self) -> str:
-        """Query that opens the run on the page, after the page's address."""
+        """Query string that opens the run on the page."""
         texts = {"scene": self.settings.scene}
         for name, value in self.settings.changed().items():
             # Texts stand in an address as they are, all else as JSON.
@@ -121,7 +121,7 @@ def rows_of(case: KnownCase) -> Iterator[Row]:
 def _rows_by(
     solver: str, case: KnownCase, answer: SolvedCase, has_ended: bool
 ) -> Iterator[Row]:
-    """Rows of a case by a solver, which has come to its end or not."""
+    """Rows of a case by a solver, which has converged or not."""
     for quantity, unit, known, ours in case.numbers(answer):
         # Known numbers are never zero: such a case would be no test.
         deviation = float(abs(ours - known) / abs(known))
@@ -146,7 +146,7 @@ def _rows_by(
 
 
 def known_case(case: Case) -> KnownCase:
-    """Make a case of the proof of a case of the trade."""
+    """Make a case of the proof from a case of the trade."""
     asked = case.quantity
 
     def numbers(answer: SolvedCase) -> Iterator[Number]:
@@ -177,7 +177,7 @@ def cases() -> list[KnownCase]:
 
 
 def holds(row: Row) -> bool:
-    """Check whether a number deviates by no more than is allowed."""
+    """Check whether a computed number is within its tolerance."""
     return bool(row["holds"] == HOLDS)
 
 
@@ -207,7 +207,7 @@ def write_proof(rows: Sequence[Row], folder: Path) -> None:
 
 
 def _by_case(rows: Sequence[Row]) -> list[dict[str, Any]]:
-    """Cases of rows: entries by the columns of `CASE`, and lines of texts (`rows`)."""
+    """Group rows by case: entries by the columns of `CASE`, and lines (`rows`)."""
     digits = {"known": 6, "ours": 6}
     cases = []
     # Rows of a case follow each other.

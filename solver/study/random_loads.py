@@ -50,7 +50,7 @@ opens joints."""
 
 
 def log_uniform(generator: Generator, low: float, high: float) -> float:
-    """Random positive number; all decades are equally likely."""
+    """Random positive number, log-uniformly distributed."""
     return float(np.exp(generator.uniform(math.log(low), math.log(high))))
 
 
@@ -97,7 +97,7 @@ def random_loads(
 
 
 def _friction_and_largest_load(given: Mapping[str, Any]) -> tuple[float, float]:
-    """Coefficient of friction that limits loads, and the largest load over friction.
+    """Coefficient of friction that limits loads, and largest load over friction.
 
     `given` are all settings by name. A wall of bricks tips before it slides where
     friction is larger than its width over its height.
@@ -140,7 +140,7 @@ def _strengths(
     values: Mapping[str, Any],
     generator: Generator,
 ) -> dict[str, float]:
-    """Random cohesion and cap of friction, over the friction of the pressing force.
+    """Random cohesion and cap, relative to the friction of the pressing force.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def _friction_law(
     values: Mapping[str, Any],
     generator: Generator,
 ) -> dict[str, Any]:
-    """Random lengths and stiffnesses of the friction law, where values have these.
+    """Random lengths and stiffnesses of the friction law, if it has any.
 
     Slips are measured by the motion of the bodies, m, springs by their stiffness.
     """
@@ -207,7 +207,7 @@ def _section(kind: Any, given: Mapping[str, Any]) -> Any:
 def _scales(
     kind: Any, given: Mapping[str, Any], generator: Generator
 ) -> dict[str, float]:
-    """Pressing force, and the motion and strains by a load as large, by their units."""
+    """Scales by unit: pressing force, and motion and strain under an equal load."""
     if "construction" in given:
         return _scales_of_rope(kind, given, generator)
     if "wrap" in given:
@@ -225,7 +225,7 @@ def _scales(
 
 
 def _scales_of_arch(given: Mapping[str, Any]) -> dict[str, float]:
-    """Weight of an arch, and motions of its abutments that open joints, by unit."""
+    """Scales of an arch by unit: weight, and motions of abutments that open joints."""
     radius = given["length"]
     volume = math.radians(given["span"]) * given["thickness"] * radius**2
     strain = given["unit_weight"] * radius / given["young"]
@@ -235,7 +235,7 @@ def _scales_of_arch(given: Mapping[str, Any]) -> dict[str, float]:
 def _scales_of_wires(
     given: Mapping[str, Any], generator: Generator
 ) -> dict[str, float]:
-    """Force on round wires whose contacts have a random width, and motions, by unit."""
+    """Scales of round wires by unit: force for a random contact width, and motion."""
     half_width = 10.0 ** generator.uniform(*CONTACTS)
     force = half_width**2 * given["young"] * given["length"]
     return {

@@ -1,4 +1,4 @@
-"""Random runs of any scene: wide in mesh, cuts, loads, profiles and method.
+"""Random runs of all scenes, with random mesh, cuts, loads, profiles and method.
 
 Every setting is drawn by its own definition, over the range of its slider, so that a
 new setting is drawn as well. Settings that have to fit together are drawn together:
@@ -90,14 +90,14 @@ TRIALS = 10_000
 def random_cases(
     scenes: Sequence[str], number: int, seed: int
 ) -> Iterator[StabilityCase]:
-    """Random runs of scenes, or of all: row n is of scene n modulo their number."""
+    """Random runs of some or all scenes: row n is of scene n modulo their number."""
     names = list(scenes or CATALOGUE)
     for row in range(number):
         yield random_case(draw(names[row % len(names)], seed, row), seed, row)
 
 
 def random_case(settings: Settings, seed: int, row: int) -> StabilityCase:
-    """Case of drawn settings, whose answer is right within their accuracy."""
+    """Case of random settings: passes if the answer is right within their accuracy."""
     return StabilityCase(
         title=f"row {row} of seed {seed}",
         scene=settings.scene,
@@ -110,7 +110,7 @@ def random_case(settings: Settings, seed: int, row: int) -> StabilityCase:
 
 
 def draw(scene: str, seed: int, row: int) -> Settings:
-    """Settings of one random run; the same numbers give the same settings."""
+    """Random settings of a run, determined by seed and row."""
     generator = np.random.default_rng([seed, row, *scene.encode()])
     kind = CATALOGUE[scene]
     last = SettingError(
@@ -171,12 +171,12 @@ def _mesh(kind: Any, generator: Generator) -> dict[str, Any]:
 
 
 def _count(generator: Generator, low: int, high: int) -> int:
-    """Random whole number; all decades are equally likely."""
+    """Random integer, log-uniformly distributed."""
     return min(int(log_uniform(generator, low, high + 1)), high)
 
 
 def _draw_alone(kind: Any, values: dict[str, Any], generator: Generator) -> None:
-    """Add the settings that are drawn by their definitions alone."""
+    """Add random values of the settings that depend only on their definition."""
     is_mixed = generator.random() < 0.5
     default = kind()
     for name, definition in kind.definitions().items():
@@ -194,7 +194,7 @@ def _draw_alone(kind: Any, values: dict[str, Any], generator: Generator) -> None
 
 
 def _fit_together(kind: Any, values: dict[str, Any], generator: Generator) -> None:
-    """Change the values drawn so far to values that fit the mesh."""
+    """Change random values to fit the mesh."""
     if "friction_factors" in values:
         values["friction_factors"] = _friction_factors(kind, values, generator)
     if "layer_lengths" in values and generator.random() < 0.5:
@@ -229,7 +229,7 @@ def _friction_factors(
 
 
 def _fit_aspect(kind: Any, values: dict[str, Any], generator: Generator) -> None:
-    """Choose the size across such that elements are slender by no more than 100."""
+    """Choose the height such that the aspect ratio of elements is at most 100."""
     length = values.setdefault("length", kind.definitions()["length"].default)
     power = 0.7
     if generator.random() < 2.0 * CHANGED:
@@ -255,7 +255,7 @@ def _paths(kind: Any, values: dict[str, Any], generator: Generator) -> dict[str,
 
 
 def _drawn(name: str, definition: Any, generator: Generator) -> object:
-    """Random value of a setting by its definition alone."""
+    """Random value of a setting, from its definition only."""
     if isinstance(definition, CurveParameter):
         make = TABLES.get(definition.abscissa)
         if make and generator.random() < 0.4:
@@ -293,7 +293,7 @@ def _construction(_name: str, generator: Generator) -> list[list[float]]:
 
 
 def _profile(name: str, generator: Generator) -> list[list[float]]:
-    """Random factors along a body; some are zero, but not those of a section."""
+    """Random factors along a body; zeros are allowed, except for a section."""
     factors = 10.0 ** generator.uniform(-1.0, 1.0, int(generator.integers(2, 7)))
     if name != "section_profile":
         factors[generator.random(len(factors)) < SELDOM] = 0.0

@@ -1,4 +1,4 @@
-"""Stability: extreme and random runs, their outcomes, and the verdicts on these."""
+"""Stability: extreme and random runs, their outcomes and verdicts."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Verdict(StrEnum):
 
 
 class Judge(StrEnum):
-    """Source of a verdict."""
+    """Source of a verdict on a run."""
 
     LAWS = "laws"
     REFERENCE = "reference"
@@ -119,7 +119,7 @@ METHODS: dict[str, dict[str, object]] = {"fast": {}, "paper": {"method": "paper"
 
 @dataclass(frozen=True)
 class StabilityCase:
-    """A run to be made, and the verdicts with which it passes.
+    """A run, and the verdicts with which it passes.
 
     Attributes
     ----------
@@ -158,7 +158,7 @@ class StabilityCase:
 def extreme_cases(
     scenes: Collection[str] = (), *, quick: bool = False
 ) -> Iterator[StabilityCase]:
-    """Cases of some scenes, or of all, by each method; or the quick ones alone."""
+    """Extreme cases of some or all scenes by each method, or only the quick ones."""
     for scene, groups in tomllib.loads(CASES.read_text(encoding="utf-8")).items():
         if scene not in (scenes or CATALOGUE):
             continue
@@ -172,7 +172,7 @@ def extreme_cases(
 
 
 def _by_each_method(case: StabilityCase) -> Iterator[StabilityCase]:
-    """Yield a case by each method, with tight stop rules unless it has its own."""
+    """Yield a case by each method, with strict stop rules unless it has others."""
     for method, settings in METHODS.items():
         values = PRECISE | settings | dict(case.values)
         yield replace(case, values=values, method=method)
@@ -214,7 +214,7 @@ class Outcome:
 
 
 def run(scene: str, values: Mapping[str, object]) -> Outcome:
-    """Run a scene of the catalogue to its stop rule, and measure the answer.
+    """Run a scene of the catalogue to its stop rule, and measure its errors.
 
     The values are settings that differ from the scene's own; a warning breaks the run.
     """
@@ -239,7 +239,7 @@ def _alarm() -> Callable[[], bool]:
 
 
 def _measured(solution: Solution) -> Outcome:
-    """Compare a solution with the laws, and with the reference where there is one."""
+    """Compare a solution with the laws, and with the reference if there is one."""
     iterate = solution.iterate
     fields = iterate.displacement, iterate.contact_force
     if not all(np.isfinite(field).all() for field in fields):
@@ -291,7 +291,7 @@ def _beside_reference(outcome: Outcome, iterate: Iterate) -> Outcome:
 
 
 def _compared(outcome: Outcome, iterate: Iterate, solution: Reference) -> Outcome:
-    """Outcome with the errors of an iterate, beside a solution that judges it."""
+    """Outcome with the errors of an iterate against a solution."""
     distance = distance_to(solution, iterate.problem)
     of_solution = law_residuals(solution, iterate.problem)
     error = distance.of_friction_force(iterate)
@@ -305,7 +305,7 @@ def _compared(outcome: Outcome, iterate: Iterate, solution: Reference) -> Outcom
 
 
 def _solution_near(iterate: Iterate) -> Reference | None:
-    """Solution that a status step finds from the states of an iterate, if any."""
+    """Solution by a status step from the states of an iterate, or None."""
     stop = _alarm()
     try:
         solver = incremental_solver(iterate.problem, stop)
@@ -320,7 +320,7 @@ def _solution_near(iterate: Iterate) -> Reference | None:
 
 
 def _doubt(laws: float, of_reference: LawResiduals, error: float) -> str:
-    """Reason why a reference is not the only solution; empty without one.
+    """Reason why the reference may not be the only solution, or "".
 
     `laws` is the largest violation of any law by the answer, `error` the distance of
     its contact force from the reference.
@@ -341,7 +341,7 @@ class Judgement(NamedTuple):
 
 
 def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Judgement:
-    """Judge an outcome by its numbers and its status alone.
+    """Judge an outcome by its numbers and its status.
 
     Laws come first, and of a certified answer they alone count, up to the residual that
     it states: a body that deforms far, or is stiff beside what holds it, has no digits
@@ -401,6 +401,6 @@ def passed(row: Row) -> bool:
 
 
 def judged_runs(cases: Iterable[StabilityCase]) -> Iterator[Row]:
-    """Run cases, and yield the row of each as soon as it is done."""
+    """Run cases, and yield the row of each when it is done."""
     for case in cases:
         yield row_of(case, run(case.scene, case.values))

@@ -79,7 +79,7 @@ def summary(runs: Sequence[Row]) -> str:
 
 
 def counts(runs: Sequence[Row]) -> list[list[str]]:
-    """Numbers of runs by verdict, with the meaning of each, below a head."""
+    """Rows of the number of runs by verdict and its meaning, below a head."""
     return _counted(runs, "verdict", MEANING)
 
 

@@ -94,7 +94,7 @@ def _times_to_levels(curve: ErrorCurve) -> list[float]:
 
 
 def _row(curve: ErrorCurve, is_first: Flags) -> Row:
-    """Row of a method; `is_first`, (n_levels,), says where no method is quicker."""
+    """Row of a method; `is_first`, (n_levels,), marks levels where it is fastest."""
     cells = []
     for level, star in zip(LEVELS.values(), is_first, strict=True):
         reached = curve.reached(level)

@@ -1,4 +1,4 @@
-"""Use of a table that is brought to a run: a measured loop, results, or a path."""
+"""Use of a table: a measured loop, results of another program, or a path."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def use_of(table: Table, axes: Axes) -> Use:
 def brought_in(
     table: Table, settings: Settings, axes: Axes
 ) -> OtherResults | MeasuredLoop:
-    """Results, or else a loop, in a table for a scene whose loop has these axes."""
+    """Read results, or else a loop, from a table, for a loop of these axes."""
     if use_of(table, axes) is Use.RESULTS:
         return results_in(table, settings)
     return loop_in(table, axes)

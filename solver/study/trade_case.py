@@ -34,7 +34,7 @@ Part = TypeVar("Part")
 
 @dataclass(frozen=True)
 class PlotFlag:
-    """Mark of the known value on a plot, by the name of its tab.
+    """Mark of the known value on a plot, which the name of its tab identifies.
 
     It is at `x` and `y` on the axes of the plot, SI, or at any `x` without one.
     """
@@ -47,7 +47,7 @@ class PlotFlag:
 
 @dataclass(frozen=True)
 class Surroundings:
-    """Ground in which bodies are drawn, below or around them, and their orientation.
+    """Ground drawn below or around the bodies, and orientation of the bodies.
 
     Upright ones have their left end on top.
     """
@@ -89,7 +89,7 @@ class Case:
     surroundings: Surroundings | None = None
 
     def knows(self, settings: Settings) -> bool:
-        """Check whether settings differ from the case's only in mesh and method."""
+        """Check whether settings differ from the case's in mesh and method only."""
         definitions = settings.definitions()
         # They change what is found, and not what is known.
         mesh = {*settings.MESH, "instants"}
@@ -99,7 +99,7 @@ class Case:
         )
 
     def sentence_on(self, sentence: str) -> str:
-        """The sentence of the case on a run, by the scene's sentence on the run.
+        """The case's sentence on a run, from the scene's sentence.
 
         It ends with what the scene says of the run and not of the case.
         """
@@ -160,7 +160,7 @@ def case_from_file(path: Path) -> Case:
 
 
 def _part(kind: type[Part], values: dict[str, Any], name: str) -> Part:
-    """A part of a case from its table; refuse unknown places and orientations."""
+    """A part of a case from its table; refuse unknown positions and orientations."""
     with placed(name):
         part = kind(**fields_in(kind, values))
         for key, allowed in (("place", PLACES), ("orientation", ORIENTATIONS)):

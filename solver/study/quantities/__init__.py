@@ -92,7 +92,7 @@ FORMER = {"energy": "dissipation", "slipping": "slipped_share"}
 
 
 def reading(text: object) -> Quantity:
-    """Quantity of a text `NAME` or `NAME@PARAMETER`; any other text is refused."""
+    """Quantity named by a text `NAME` or `NAME@PARAMETER`; refuse other texts."""
     name = ""
     at_sign = ""
     number = ""
@@ -116,7 +116,7 @@ def reading(text: object) -> Quantity:
 
 
 def _number(text: object, name: str, number: str, parameter: Parameter) -> float:
-    """Value of a quantity's parameter; a value that it may not have is refused."""
+    """Value of a quantity's parameter; refuse a value out of range."""
     low, high = parameter.bounds
     is_counted = isinstance(low, int)
     if is_counted:

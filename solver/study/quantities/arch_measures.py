@@ -36,7 +36,7 @@ def _instant(run: FinishedRun, at: float | None) -> int:
 
 @quantity("Thrust over weight", parameter=AT, applies=_is_arch)
 def thrust(run: FinishedRun, at: float | None) -> float:
-    """Horizontal thrust over all that weighs, at the end or at a share of the time."""
+    """Horizontal thrust over the weight, at the end or at a share of the time."""
     instant = _instant(run, at)
     structure = run.settings.structure()
     assert isinstance(structure, Arch)
@@ -73,7 +73,7 @@ def least_friction(run: FinishedRun) -> float:
 def _limit(
     settings: Settings, limit_of: Callable[[VoussoirArch], float | None]
 ) -> float:
-    """Limit of an arch by its statics; nan where it has none."""
+    """Limit of an arch by its statics; NaN without one."""
     limit = limit_of(_statics(settings))
     if limit is None:
         return math.nan
@@ -84,7 +84,7 @@ def _limit(
     "Joints that are hinges", parameter=AT, applies=lambda settings: settings.has_joints
 )
 def hinges(run: FinishedRun, at: float | None) -> float:
-    """Number of joints that touch at one edge alone, and so turn freely about it.
+    """Number of hinges: joints that touch at one edge only.
 
     At the end of the run, or at a share of the interval.
     """
@@ -97,7 +97,7 @@ def hinges(run: FinishedRun, at: float | None) -> float:
 
 
 def are_hinges(law: Contact, touches: Flags) -> Flags:
-    """Check which joints of a law touch at one edge alone, (n_joints, n_instants).
+    """Mask of joints of a law that touch at one edge only, (n_joints, n_instants).
 
     `touches` says at which points there is contact, (n_points, n_instants).
     """
@@ -114,7 +114,7 @@ def are_hinges(law: Contact, touches: Flags) -> Flags:
     applies=lambda settings: _is_arch(settings) and settings.has("live"),
 )
 def live_factor(run: FinishedRun) -> float:
-    """Smallest factor on the load on the back for which no forces balance it.
+    """Smallest factor on the load on the back at which the arch collapses.
 
     At the worst place of its way, by limit analysis.
     """

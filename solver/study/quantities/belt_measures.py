@@ -41,7 +41,7 @@ def _carried(run: FinishedRun) -> Array:
 
 
 def _largest(run: FinishedRun, values: Array, at: float | None) -> float:
-    """Value at a share of the interval, or the largest in size, of (n_instants,)."""
+    """Value at a share of the interval, else the largest in size, of (n_instants,)."""
     if at is not None:
         return float(values[instant_at(run, at)])
     return float(values[first_largest(np.abs(values))])
@@ -62,14 +62,14 @@ def tension_ratio(run: FinishedRun, at: float | None) -> float:
 
 @quantity("Torque on the drum", "N·m", parameter=AT, applies=_is_drum)
 def torque(run: FinishedRun, at: float | None) -> float:
-    """Torque of the band on the drum that is largest in size, N m: (T2 - T1) R."""
+    """Torque (T2 - T1) R of the band on the drum, of largest size, N m."""
     radius = run.settings.values()["drum_radius"]
     return _largest(run, _carried(run) * radius, at)
 
 
 @quantity("Creep of a belt that runs on", parameter=AT, applies=_is_drum)
 def creep(run: FinishedRun, at: float | None) -> float:
-    """Creep that is largest in size, or that at a share of the interval.
+    """Creep of largest size, or at a share of the interval.
 
     Share by which a belt that runs over a turning drum with these tensions leaves it
     slower than it comes, (T2 - T1) / (E A): as much of it passes both ends, stretched

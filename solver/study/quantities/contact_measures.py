@@ -65,7 +65,7 @@ def peak_displacement(run: FinishedRun) -> float:
 
 
 def _of_loop(run: FinishedRun, name: str, at: float | None) -> float:
-    """Key figure of the loop: the largest in size, or at a share of the interval.
+    """Key figure of the loop: of largest size, or at a share of the interval.
 
     NaN where the loop has no figure of that name.
     """
@@ -81,7 +81,7 @@ def _of_loop(run: FinishedRun, name: str, at: float | None) -> float:
     "Largest displacement of the loop", "m", parameter=AT, applies=_has_no_wires_around
 )
 def displacement(run: FinishedRun, at: float | None) -> float:
-    """Displacement of the loop that is largest in size, m.
+    """Displacement of the loop of largest size, m.
 
     NaN where the loop is not over a displacement.
     """
@@ -90,7 +90,7 @@ def displacement(run: FinishedRun, at: float | None) -> float:
 
 @quantity("Largest force of the loop", "N", parameter=AT, applies=_has_no_wires_around)
 def force(run: FinishedRun, at: float | None) -> float:
-    """Force of the loop that is largest in size, N; NaN where the loop has none."""
+    """Force of the loop of largest size, N; NaN for loops without force."""
     return _of_loop(run, "force", at)
 
 
@@ -123,7 +123,7 @@ def _axial_force_instant(run: FinishedRun, at: float | None) -> int:
 
 
 def instant_at(run: FinishedRun, share: float) -> int:
-    """Instant that is nearest to a share of the interval."""
+    """Index of the instant nearest to a share of the interval."""
     times = run.problem.instants
     return int(np.abs(times - share * times[-1]).argmin())
 
@@ -300,13 +300,13 @@ def spring_force(run: FinishedRun) -> float:
     when=largest_load,
 )
 def end_displacement(run: FinishedRun, instant: int) -> float:
-    """Displacement of the loop at the largest load, m; the largest while it stands."""
+    """Displacement of the loop at the largest load, m."""
     return float(run.displacement[instant])
 
 
 @quantity("Displacement left without load", "m", applies=_over_a_displacement)
 def residual_displacement(run: FinishedRun) -> float:
-    """Displacement of the loop left at an unloaded end, m; NaN if the end is loaded."""
+    """Residual displacement of an unloaded end, m; NaN if the end is loaded."""
     size = np.abs(run.force)
     # Under load the displacement is not what is left.
     if size[-1] > UNLOADED * size.max():
@@ -326,7 +326,7 @@ def stiffness(run: FinishedRun) -> float:
 
 @quantity("Energy dissipated", "J", parameter=CYCLE)
 def dissipation(run: FinishedRun, at: float | None) -> float:
-    """Energy dissipated by friction, J: in the whole run, or in a cycle.
+    """Energy dissipated by friction, J: in the whole run, or in one cycle.
 
     NaN where the load has fewer cycles.
     """
@@ -338,7 +338,7 @@ def dissipation(run: FinishedRun, at: float | None) -> float:
 
 @quantity("Share of the points that slip", is_share=True)
 def slipped_share(run: FinishedRun) -> float:
-    """Share of the points that slip at any instant, of those that can slip."""
+    """Share of the points that slip at any instant, among those that can slip."""
     return float(_slipped_shares(run)[-1])
 
 
@@ -390,13 +390,13 @@ def _stand_still(run: FinishedRun) -> Flags:
 
 
 def are_clamped(problem: Problem, law: Contact) -> Flags:
-    """Pairs whose tangential displacement is prescribed on all sides, (n_pairs,)."""
+    """Mask of pairs with tangential displacement prescribed on all sides."""
     held = [problem.is_held[rows] for rows in law.tangent.sides]
     return np.asarray(np.all(held, axis=0))
 
 
 def _at_first_slip(run: FinishedRun, values: Array, at: float | None) -> float:
-    """Value at the instant by which a share of the points, or any point, has slipped.
+    """Value at the first instant at which a share of the points, or any, has slipped.
 
     The values have shape (n_instants,). Infinite where no such instant comes.
     """
@@ -409,7 +409,7 @@ def _at_first_slip(run: FinishedRun, values: Array, at: float | None) -> float:
 
 @quantity("Time of the first slip", "s", parameter=SHARE)
 def first_slip_time(run: FinishedRun, at: float | None) -> float:
-    """First instant by which points have slipped, s; infinite if no point slips."""
+    """Time of the first slip, s; infinite if no point slips."""
     return _at_first_slip(run, run.problem.instants, at)
 
 

@@ -61,7 +61,7 @@ def has_a_limit(settings: Settings) -> bool:
     applies=lambda settings: n_cycles_of(settings) > 1,
 )
 def cycle_energy_ratio(run: FinishedRun) -> float:
-    """Energy of the last cycle over that of the second; NaN if the second is zero."""
+    """Energy of the last cycle over that of the second; NaN if the latter is zero."""
     energy = run.cycles.energy
     if energy[1] > NO_ENERGY * np.abs(run.dissipated).sum():
         return float(energy[-1] / energy[1])
@@ -70,7 +70,7 @@ def cycle_energy_ratio(run: FinishedRun) -> float:
 
 @quantity("Slip that the last cycle leaves", "m", applies=has_cycles)
 def ratchet(run: FinishedRun) -> float:
-    """Largest slip of a point that is left at the end of the last cycle, m."""
+    """Largest slip per cycle that remains at the end of the last cycle, m."""
     left = np.abs(run.cycles.net[:, -1]).max()
     if left > RESIDUE * run.cycles.slip.max():
         return float(left)
@@ -83,7 +83,7 @@ def ratchet(run: FinishedRun) -> float:
     applies=has_cycles,
 )
 def sliding_share(run: FinishedRun) -> float:
-    """Largest share of the contact that slips at once in the last cycle, by length.
+    """Largest share of the contact that slips simultaneously in the last cycle.
 
     0 is stick, 1 gross slip, anything between partial slip (O. Vingsbo, S. Söderberg,
     On fretting maps, Wear 126, 1988). A point that a clamp holds never slips, and is
@@ -112,7 +112,7 @@ def _free_lengths(run: FinishedRun) -> Array:
 
 @quantity("Shakedown factor on the swing of the load", applies=has_a_limit)
 def shakedown_factor(run: FinishedRun) -> float:
-    """Largest factor on the swing about the mean of the last cycle that shakes down.
+    """Shakedown factor on the swing of the load about its mean in the last cycle.
 
     With that factor slip can still cease (MATHEMATICS.md, 15). NaN where no limit
     is known, or where not even the mean load keeps all contacts closed.
@@ -138,7 +138,7 @@ def _rope(settings: Settings) -> Rope:
 
 
 def _last(run: FinishedRun) -> slice:
-    """Instants of the last cycle with its first one; all instants without a cycle."""
+    """Instants of the last cycle, including its first; all instants without a cycle."""
     ends = cycle_ends(run.settings)
     if len(ends) > 1:
         return slice(ends[-2], ends[-1] + 1)
@@ -147,13 +147,13 @@ def _last(run: FinishedRun) -> slice:
 
 @quantity("Bending stiffness while nothing slips", "N·m^2", applies=is_rope)
 def stuck_bending(run: FinishedRun) -> float:
-    """Bending stiffness of wires that all stick, N m^2."""
+    """Bending stiffness with all wires sticking, N m^2."""
     return _rope(run.settings).section.stuck_bending
 
 
 @quantity("Bending stiffness once all slips", "N·m^2", applies=is_rope)
 def slipping_bending(run: FinishedRun) -> float:
-    """Bending stiffness of wires that all slip, N m^2."""
+    """Bending stiffness with all wires slipping, N m^2."""
     return _rope(run.settings).section.slipping_bending
 
 
@@ -178,7 +178,7 @@ def bending_stiffness(run: FinishedRun, instant: int) -> float:
     applies=lambda settings: is_rope(settings) and not _rope(settings).is_clamped,
 )
 def energy_per_metre(run: FinishedRun, at: float | None) -> float:
-    """Energy dissipated in a metre of strand, J/m: in the whole run, or in a cycle.
+    """Energy dissipated per metre of strand, J/m: in the whole run, or in one cycle.
 
     NaN near a clamp, and where the load has fewer cycles.
     """
@@ -205,7 +205,7 @@ def wire_slip(run: FinishedRun) -> float:
     "Largest friction work in the last cycle, a metre of wire", "J/m", applies=is_rope
 )
 def wire_work(run: FinishedRun) -> float:
-    """Largest friction work on a metre of wire in the last cycle, at any point, J/m.
+    """Largest friction work per metre of wire in the last cycle, J/m.
 
     Fretting is worst at that point, which near a clamp is beside the clamp.
     """
@@ -225,7 +225,7 @@ def wire_work(run: FinishedRun) -> float:
     when=lambda run: first_largest(np.maximum(run.force, 0.0)),
 )
 def recovery_length(run: FinishedRun, instant: int) -> float:
-    """Distance from its break at which a wire carries its tension again, m.
+    """Distance from the break at which a wire has regained its tension, m.
 
     The distance is taken at the largest tension. NaN without a broken wire, or without
     tension; infinite if the wire regains its tension on neither side.

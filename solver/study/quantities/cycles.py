@@ -44,7 +44,7 @@ Word = Literal[
 
 
 def slips_of(iterate: Iterate) -> Iterator[tuple[Stacked, Array, Array]]:
-    """Laws of contact, the slip of their pairs, m, and its friction work, J.
+    """Laws of contact, with slip of their pairs, m, and friction work, J.
 
     Slip and work are increments since the instant before, shape (n_pairs, n_instants).
     They are those of the local stage, whose laws hold at every iterate. A point slips
@@ -74,7 +74,7 @@ def slips_of(iterate: Iterate) -> Iterator[tuple[Stacked, Array, Array]]:
 
 @dataclass(frozen=True, eq=False)
 class LoadCycles:
-    """Slip and friction work of a run, cycle by cycle.
+    """Slip and friction work of a run in each cycle.
 
     Attributes
     ----------
@@ -113,7 +113,7 @@ class LoadCycles:
 
 
 def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
-    """Cycles of an iterate; the points are those of one interface after another."""
+    """Cycles of an iterate; points of all interfaces, one after another."""
     ends = cycle_ends(settings)
     contacts = iterate.problem.contacts
     slip = np.zeros((contacts.n_points, iterate.problem.n_instants))
@@ -142,7 +142,7 @@ def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
 
 
 def cycle_ends(settings: Settings) -> list[int]:
-    """Instants at which the cycles of a load begin, and at which the last one ends.
+    """Instants at which the cycles of a load begin, and the end of the last one.
 
     Of several loads the one with the most turning points counts, the first of equals.
     Fewer than two instants are no cycle.
@@ -157,7 +157,7 @@ def n_cycles_of(settings: Settings) -> int:
 
 
 def instants_of_cycle(settings: Settings, number: float | None = None) -> slice | None:
-    """Instants of a cycle without its first one; all instants without a number.
+    """Instants of a cycle, without its first; all instants if `number` is None.
 
     Cycles are counted from 1. None where the load has fewer cycles.
     """
@@ -171,7 +171,7 @@ def instants_of_cycle(settings: Settings, number: float | None = None) -> slice 
 
 
 def turning_points(path: Array) -> list[int]:
-    """Instants at which a path, shape (n_instants,), turns back.
+    """Instants at which a path, shape (n_instants,), reverses.
 
     Swings below `SMALLEST_SWING` are ignored. The last extreme counts, too, if it is as
     far out as the one two before it. Where an extreme value is held, its first instant
@@ -215,7 +215,7 @@ def loads_over_time(settings: Settings) -> Iterator[Array]:
 
 
 def _is_repeated(settings: Settings, ends: list[int]) -> bool:
-    """Check whether all loads begin, end and peak alike in the last cycles."""
+    """Check whether all loads have equal ends and peaks in the last cycles."""
     for path in loads_over_time(settings):
         parts = [path[a : b + 1] for a, b in pairwise(ends[-LAST - 1 :])]
         # Ends and extremes: what happens between them does not change the fate of slip.
@@ -239,7 +239,7 @@ def _summed(values: Array, ends: list[int]) -> Array:
 
 
 def fate_of(cycles: LoadCycles) -> Word | None:
-    """Long-term fate of slip; None where that is not settled.
+    """Long-term behaviour of slip; None if undecided.
 
     The fate is not settled with fewer than three cycles, with cycles that are not
     alike, with slip that still changes, or without any slip.

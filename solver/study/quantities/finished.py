@@ -1,4 +1,4 @@
-"""A finished run: the source of all quantities, and the key figures of its loop."""
+"""A finished run, from which quantities are read; key figures of the loop."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ DRIVES = {
 
 @dataclass(frozen=True, eq=False)
 class FinishedRun:
-    """A run from its settings to its end.
+    """A finished run: settings, solution and times.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class FinishedRun:
 
     @property
     def lost_from(self) -> int | None:
-        """First instant that is known to have no solution; None without any.
+        """First instant without a solution, as far as known; None without any.
 
         A run with such an instant has no quantities: all instants are iterated
         together, and those without a solution keep the others from converging. A
@@ -126,7 +126,7 @@ class FinishedRun:
 
     @property
     def displacement(self) -> Array:
-        """Displacement of the loop, or its other abscissa, shape (n_instants,), m."""
+        """Abscissa of the loop, mostly a displacement, m, shape (n_instants,)."""
         return self._along_loop[0]
 
     @property
@@ -172,13 +172,13 @@ class FinishedRun:
 
 
 def first_largest(values: Array) -> int:
-    """First instant at which values, (n_instants,), are largest but for rounding."""
+    """First instant at which values, (n_instants,), are largest up to rounding."""
     size = np.abs(values)
     return int(np.argmax(size >= (1.0 - EQUAL) * size.max()))
 
 
 def largest_load(run: FinishedRun) -> int:
-    """Instant of the largest load: where the loop's force is largest in size.
+    """Instant of the largest load: of the largest force of the loop.
 
     While the load is held, the displacement may go on growing, as where friction falls.
     So of all instants of that force, the first with the largest displacement counts.
@@ -216,7 +216,7 @@ class KeyFigure:
         return self.at(-1)
 
     def at(self, instant: int) -> float:
-        """Value at an instant; zero where rounding alone leaves something."""
+        """Value at an instant, with zero in place of rounding errors."""
         value = float(self.values[instant])
         if abs(value) > ZERO * abs(self.largest):
             return value
@@ -254,7 +254,7 @@ def slipping_shares(status: NDArray[np.int8]) -> Array:
 
 @cache
 def warm_up() -> None:
-    """Make the tiny runs, once in a process, so that later runs import no code."""
+    """Make tiny runs, once in a process, so that later times include no imports."""
     for scene, tiny in TINY.items():
         finished_run(CATALOGUE[scene].checked(tiny))
 
@@ -315,7 +315,7 @@ def finished_run(
 
 
 class KnownReference(NamedTuple):
-    """Reference of a problem, and what is known of its existence and uniqueness.
+    """Reference of a problem, with doubts on existence and uniqueness.
 
     Attributes
     ----------
@@ -335,7 +335,7 @@ class KnownReference(NamedTuple):
 def known_reference(
     problem: Problem, stop: Callable[[], bool] | None = None
 ) -> KnownReference:
-    """Find the reference without a run; `stop` is asked again and again to give up.
+    """Find the reference; `stop` is called repeatedly, and ends the search.
 
     Nothing that it prepares is kept: a run afterwards prepares its own in its time.
     """
@@ -362,7 +362,7 @@ def known_reference(
 
 
 def _without_solution(problem: Problem, reference: Reference) -> KnownReference:
-    """Doubt about a problem whose reference has no solution at some instants."""
+    """Sentence on a problem whose reference has no solution at some instants."""
     lost = np.count_nonzero(~reference.converged)
     lost_from = None
     message = (
@@ -384,7 +384,7 @@ def neighbour(
     stop: Callable[[], bool] | None = None,
     spent: float = 0.0,
 ) -> tuple[Answer, Decision] | None:
-    """Answer by a status step from the states of a run of similar settings.
+    """Solve by a status step from the states of a run with similar settings.
 
     The answer counts only if it is certified for the discrete problem, and no other
     solution shows, so that it does not depend on the start. None where it is not found
@@ -429,7 +429,7 @@ def neighbour(
 
 
 def _may_have_others(problem: Problem) -> bool:
-    """Check whether friction softens or bonds break: then several solutions may exist.
+    """Check whether several solutions may exist: friction softens, or bonds break.
 
     Which of them a run finds depends on its start.
     """

@@ -1,4 +1,4 @@
-"""Quantities of interfaces as a whole: friction that holds them, and its force."""
+"""Quantities of whole interfaces: friction that prevents sliding, and its force."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from solver.study.quantities.quantity import quantity
 
 
 def _rubs_by_mu(settings: Settings) -> bool:
-    """Check whether the friction bound is mu N alone, whatever has slipped."""
+    """Check whether the friction bound is mu N, independent of slip."""
     law = settings.law
     return law.cohesion == 0.0 and math.isinf(law.cap) and law.slip_factor is None
 
 
 @dataclass(frozen=True, eq=False)
 class _Hold:
-    """Forces of an interface as a whole at every instant: how close it is to sliding.
+    """Resultant forces of an interface at every instant, and its reserve to sliding.
 
     Attributes
     ----------
@@ -44,14 +44,14 @@ class _Hold:
 
     @property
     def needed(self) -> Array:
-        """Coefficient of friction in use, (n_instants,); 0 where nothing presses."""
+        """Mobilised coefficient of friction, (n_instants,); 0 without pressing."""
         nothing = np.zeros_like(self.pressing)
         return np.divide(
             np.abs(self.carried), self.pressing, nothing, where=self.pressing > 0.0
         )
 
     def sliding(self, friction: float, instants: Array) -> Array:
-        """Pressing forces while the interface slides, and as it begins to, (n,), N.
+        """Pressing forces during sliding, and at its onset, (n,), N.
 
         Sliding begins between two instants, where the friction, if it goes on growing
         at its last rate, comes to mu times the pressing force.
@@ -74,7 +74,7 @@ class _Hold:
     def _onset(
         self, friction: float, steps: Array, before: Indices, rise: Array
     ) -> Array:
-        """Share of a step after which sliding begins, shape (n_onsets,); 1 if in none.
+        """Share of a step after which sliding begins, shape (n_onsets,); else 1.
 
         Parameters
         ----------
@@ -97,7 +97,7 @@ class _Hold:
 
 
 def _holds(run: FinishedRun) -> list[_Hold]:
-    """Forces of every interface with friction as a whole."""
+    """Resultant forces of every interface with friction."""
     # A point that a clamp holds, too, never slips: it counts as free.
     determinate = determinate_forces(run.problem)
     holds = []
@@ -108,7 +108,7 @@ def _holds(run: FinishedRun) -> list[_Hold]:
 
 
 def _hold(run: FinishedRun, name: str, determinate: Flags) -> _Hold:
-    """Forces of an interface as a whole.
+    """Resultant forces of an interface.
 
     `determinate` says where the friction is determinate, shape (n_points, n_instants).
     """
@@ -181,7 +181,7 @@ def _pressing_by_friction(run: FinishedRun, name: str) -> Array:
 
 
 def _largest_needed(holds: list[_Hold]) -> float:
-    """Largest coefficient of friction in use at any interface and instant.
+    """Largest mobilised coefficient of friction of any interface at any instant.
 
     Zero where rounding alone leaves something.
     """
@@ -209,7 +209,7 @@ def holding_friction(run: FinishedRun) -> float:
 
 @quantity("Largest force that friction could hold", "N", applies=_rubs_by_mu)
 def holding_force(run: FinishedRun) -> float:
-    """Largest force, N, that friction could hold at the interface nearest to sliding.
+    """Largest friction force, N, of the interface nearest to sliding.
 
     The force is mu times the sum of the pressing forces. Where interfaces slide as a
     whole, it is the largest one while they slide, from the onset on. Otherwise it is

@@ -1,4 +1,4 @@
-"""Definition of a quantity of a run, and of the number that it may be asked with."""
+"""Definition of a quantity of a run, and of its parameter."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from solver.study.quantities.finished import FinishedRun
 
 @dataclass(frozen=True)
 class Parameter:
-    """Number that a quantity may be asked with, or has to be where it is `needed`.
+    """Parameter of a quantity, as in `NAME@PARAMETER`; optional unless `needed`.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ WITHIN = Parameter(" {:g}", (1e-12, 1.0), needed=True)
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number that a finished run has.
+    """A quantity: a function from a finished run to a number.
 
     Attributes
     ----------

@@ -21,7 +21,7 @@ LOADED = "right x"
 
 
 def can_be_clipped(settings: Settings) -> bool:
-    """Check that friction bounds are known and an end load drives all slip: on rods.
+    """Check whether friction bounds are known, and an end load drives all slip.
 
     The wires of a bent strand are driven by its curvature, not by a force at an end.
     """
@@ -65,7 +65,7 @@ def _driving_load(settings: Settings, iterate: Iterate) -> Array:
 
 
 def products_in(clips: Clips) -> Sizes:
-    """Sizes of singular vectors of the field that clips were fitted to."""
+    """Sizes of singular vectors of the field to which clips were fitted."""
     return of_products(decompose(clips.given, clips.space_weights, clips.time_weights))
 
 
@@ -80,7 +80,7 @@ def modes(run: FinishedRun) -> float:
 
 
 def _svd_modes(field: str, words: str) -> Quantity:
-    """Singular vectors of a field for an error, in the substructure that needs most."""
+    """Largest number of singular vectors of any substructure for an error."""
 
     def of(run: FinishedRun, at: float) -> float:
         values = getattr(run.iterate, f"boundary_{field}")

@@ -1,4 +1,4 @@
-"""Quantities of how a run went: iterations, time, indicators and errors."""
+"""Quantities of the course of a run: iterations, time, indicators and errors."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def _record(
     *,
     is_share: bool = False,
 ) -> Quantity:
-    """Scalar of the records of a run, at an iteration or at the end."""
+    """Quantity of a scalar of the records: at an iteration, or at the end."""
 
     def of(run: FinishedRun, at: float | None) -> float:
         records = run.solution.records
@@ -35,7 +35,7 @@ def _record(
 
 
 def _until(spent: Literal["iterations", "seconds"], field: str, words: str) -> Quantity:
-    """Iterations or seconds of a run until the error of a field is small enough."""
+    """Quantity of iterations or seconds until the error of a field meets a level."""
 
     def of(run: FinishedRun, at: float | None) -> float:
         records = run.solution.records
@@ -82,7 +82,7 @@ def seconds(run: FinishedRun) -> float:
 
 @quantity("Whether it converged", reads="course")
 def converged(run: FinishedRun) -> float:
-    """1 for a run that met its stop rule, 0 for a run that ended in another way."""
+    """1 for a converged run, else 0."""
     return float(run.solution.status.ending is Ending.CONVERGED)
 
 

@@ -1,4 +1,4 @@
-"""Executors of many calls at once: processes of this machine, or a Dask cluster.
+"""Executors of parallel calls: processes of this machine, or a Dask cluster.
 
 All are executors as of `concurrent.futures`. A call that is cancelled while it runs is
 ended with its process, where the process is one of this machine.
@@ -56,7 +56,7 @@ def processors() -> int:
 
 
 def machine() -> str:
-    """Processors, BLAS threads and versions in a line."""
+    """Text on processors, BLAS threads and versions."""
     limits = {os.environ[name] for name in LIMITS if name in os.environ}
     threads = ", ".join(sorted(limits)) or "not limited"
     python = sys.version.split()[0]
@@ -110,7 +110,7 @@ class Processes(Executor):
         return self._pool.schedule(fn, args, kwargs, timeout=self._limit)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Begin no other call; with `cancel_futures` end the processes at once."""
+        """Start no other call; with `cancel_futures` end the processes immediately."""
         self._is_shut_down = True
         if cancel_futures:
             self._pool.stop()
@@ -126,7 +126,7 @@ class Processes(Executor):
 
 
 class _LastingLocks:
-    """Context of processes whose locks last until these have ended.
+    """Multiprocessing context that keeps locks until its processes have ended.
 
     A pool drops its locks, which unlinks them, before it ends its processes. One that
     has just been started, as in the place of one that was ended, would look for a lock
@@ -148,12 +148,12 @@ class _LastingLocks:
         return lock
 
     def let_go(self) -> None:
-        """Let go of all locks: those that nobody else has are unlinked."""
+        """Release all locks; unused ones are unlinked."""
         self._locks.clear()
 
 
 def _context() -> BaseContext:
-    """Context that starts processes: from a fork server where there is one."""
+    """Multiprocessing context: a fork server where available."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
@@ -163,7 +163,7 @@ def _context() -> BaseContext:
 
 
 def start_fork_server() -> None:
-    """Start the fork server of this process, unless it runs: it never hears Ctrl-C.
+    """Start the fork server of this process, unless it runs, immune to Ctrl-C.
 
     Ctrl-C reaches all processes of a terminal. The server and its processes inherit
     that they ignore it, also while they import: the process that asks for them ends
@@ -188,7 +188,7 @@ def _begin() -> None:
 
 
 def _end_with_parent() -> None:
-    """Wait for the end of the parent process, and end this one."""
+    """Wait for the end of the parent process, then end this process."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()
@@ -198,7 +198,7 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def opened(on: str, limit: float | None = None, n_calls: int = 0) -> Iterator[Executor]:
-    """Open the executor that a text names; at the end it is closed with all its calls.
+    """Context with the executor named by a text; at its end all calls are ended.
 
     `limit` and `n_calls` are those of `Processes`; a cluster does not take them.
 
@@ -232,7 +232,7 @@ def opened(on: str, limit: float | None = None, n_calls: int = 0) -> Iterator[Ex
 
 @contextmanager
 def _cluster(address: str) -> Iterator[Executor]:
-    """Executor of a Dask scheduler, which repeats the calls of lost workers."""
+    """Executor of a Dask scheduler, which repeats calls of lost workers."""
     try:
         from distributed import Client
     except ModuleNotFoundError as missing:

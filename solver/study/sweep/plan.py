@@ -1,4 +1,4 @@
-"""Plan of a sweep: one or two settings over their values, and the result of a point."""
+"""Plan of a sweep over values of one or two settings, and rows of results."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ FORM = "NAME=LOW:HIGH:COUNT, NAME=LOW:HIGH:COUNT:log, or NAME=VALUE,VALUE,..."
 
 @dataclass(frozen=True)
 class Varied:
-    """A setting that varies, and its values.
+    """A varied setting, and its values.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class Varied:
 
     @property
     def is_numeric(self) -> bool:
-        """Check whether the values are numbers, which stand on a scale."""
+        """Check whether the values are numbers."""
         return not isinstance(self.values[0], bool | str)
 
     @property
@@ -97,7 +97,7 @@ class Plan:
 
     @property
     def readings(self) -> tuple[Quantity, ...]:
-        """Quantities that are taken of every run."""
+        """Quantities of every run."""
         return tuple(reading(name) for name in self.of)
 
     @property
@@ -112,11 +112,11 @@ class Plan:
 
     @cached_property
     def fixed(self) -> dict[str, Any]:
-        """Settings that differ from their defaults; a varied method brings the rest."""
+        """Fixed settings that differ from the defaults, or from a varied method's."""
         return self.settings.changed()
 
     def point(self, number: int) -> dict[str, Any]:
-        """Values of the settings that vary, at a point, by their names."""
+        """Values of the varied settings at a point, by name."""
         values = {}
         levels = np.unravel_index(number, self.shape)
         for axis, level in zip(self.axes, levels, strict=True):
@@ -128,7 +128,7 @@ class Plan:
         return self.settings.checked(self.fixed | self.point(number))
 
     def idle(self) -> list[str]:
-        """Names of the settings that vary and have no effect at any point."""
+        """Names of the varied settings without effect at all points."""
         idle = {axis.name for axis in self.axes}
         # At any point: a setting may apply under some values of the other one alone.
         for number in range(self.size):
@@ -181,7 +181,7 @@ class Row:
 
 
 def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
-    """Plan of texts as `--vary` and `--of` take them.
+    """Plan from texts, as of the options `--vary` and `--of`.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
 
 
 def axis_of(settings: Settings, text: str) -> Varied:
-    """Setting that varies, of a text as `--vary` takes it."""
+    """Varied setting from a text, as of the option `--vary`."""
     name, equals, values = text.partition("=")
     definitions = settings.definitions()
     if not equals or not values:
@@ -243,7 +243,7 @@ def axis_of(settings: Settings, text: str) -> Varied:
 
 
 def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], bool]:
-    """Values spread over a range LOW:HIGH:COUNT, and whether over decades."""
+    """Values of a range LOW:HIGH:COUNT, and whether they are logarithmic."""
     if not isinstance(definition, param.Number):
         remedy = "list its values, commas between them"
         raise SettingError(name, text, allowed(definition), remedy)
@@ -280,7 +280,7 @@ def _range_error(
 
 
 def _remedy(low: float, high: float, count: float, logarithmic: bool) -> str:
-    """Remedy for the numbers of a range; empty where they are right."""
+    """Remedy for the numbers of a range, or "" if they are right."""
     if not (math.isfinite(low) and math.isfinite(high)):
         return "write finite numbers"
     if not 2 <= count <= MOST_POINTS or count != int(count):

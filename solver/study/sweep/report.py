@@ -1,4 +1,4 @@
-"""Reports of a sweep: charts as plain data, a page, and the CSV file to resume."""
+"""Reports of a sweep: charts as data, a page, and the CSV file to resume from."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def chart_of(
     *,
     logarithmic: bool | None = None,
 ) -> Chart:
-    """Chart of a reading, of all rows so far, in SI.
+    """Chart of a quantity, from all rows so far, in SI.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def chart_of(
 def _scale(
     plan: Plan, index: int, values: Array, logarithmic: bool | None
 ) -> PanelAxis:
-    """Axis of a reading with these values, of any shape, NaN where there is none."""
+    """Axis of a quantity with values of any shape, some NaN."""
     known = values[np.isfinite(values)]
     if logarithmic is None:
         wide = bool(known.size and 0.0 < DECADES * known.min() < known.max())
@@ -83,14 +83,14 @@ def _scale(
 
 
 def _axis(varied: Varied) -> PanelAxis:
-    """Axis of a setting that varies."""
+    """Axis of a varied setting."""
     return PanelAxis(varied.title, varied.unit, varied.logarithmic, names=varied.names)
 
 
 def _map(
     plan: Plan, rows: Sequence[Row], index: int, runs: Runs, logarithmic: bool | None
 ) -> Map:
-    """Map of a reading over two settings."""
+    """Map of a quantity over two settings."""
     across, up = plan.axes
     factor, _ = _measure(plan, index)
     z = factor * grid(plan, rows, index).T
@@ -110,7 +110,7 @@ def _map(
 
 
 def _panel(plan: Plan, index: int, runs: Runs, logarithmic: bool | None) -> Panel:
-    """Curves of a reading over the first setting, one for each value of the second."""
+    """Curves of a quantity over the first setting, for each value of the second."""
     across, *up = plan.axes
     labels = [""]
     if up:
@@ -137,7 +137,7 @@ def _panel(plan: Plan, index: int, runs: Runs, logarithmic: bool | None) -> Pane
 
 
 def is_map(plan: Plan) -> bool:
-    """Check whether a plan makes a map: two numbers, the second of many values."""
+    """Check whether the chart is a map: of two numbers, the second with many values."""
     across, *up = plan.axes
     if not up or not across.is_numeric:
         return False
@@ -145,7 +145,7 @@ def is_map(plan: Plan) -> bool:
 
 
 def grid(plan: Plan, rows: Sequence[Row], index: int) -> Array:
-    """Finite values of a reading of converged runs, of the plan's shape, else NaN."""
+    """Values of a quantity in converged runs, of the plan's shape; NaN elsewhere."""
     # Points without a run yet are NaN, too, so that a chart can grow.
     good = np.full(plan.size, np.nan)
     for row in rows:
@@ -155,7 +155,7 @@ def grid(plan: Plan, rows: Sequence[Row], index: int) -> Array:
 
 
 def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
-    """Ends of an axis: all values, (n,), with a margin, from zero if that is near."""
+    """Limits of an axis: of values, (n,), with a margin, or from zero if near."""
     # What a logarithmic axis cannot show does not widen it.
     known = values[np.isfinite(values) & ((values > 0.0) | (not axis.logarithmic))]
     if not known.size:
@@ -174,7 +174,7 @@ def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
 
 
 def _runs(plan: Plan, rows: Sequence[Row], index: int) -> Runs:
-    """Points of the runs on the chart of a reading, with their messages."""
+    """Points of the runs on the chart of a quantity, with messages."""
     numbers = np.array([row.number for row in rows], dtype=int)
     levels = np.unravel_index(numbers, plan.shape)
     factor, _ = _measure(plan, index)
@@ -200,7 +200,7 @@ def _runs(plan: Plan, rows: Sequence[Row], index: int) -> Runs:
 
 
 def _messages(plan: Plan, rows: Sequence[Row], index: int, values: Array) -> list[str]:
-    """Messages on runs: their settings, the value of a reading, and how they ended.
+    """Messages on runs: settings, the value of a quantity, and the ending.
 
     The values are those of the reading, shape (n_rows,), in its unit.
     """
@@ -220,7 +220,7 @@ def _messages(plan: Plan, rows: Sequence[Row], index: int, values: Array) -> lis
 
 
 def _reason(row: Row, value: float) -> str:
-    """Reason why a run has no value that is an answer; empty where it has one."""
+    """Reason why a run has no valid value, or ""."""
     if not row.holds:
         return ": ".join(filter(None, (row.ending, row.reason)))
     if math.isinf(value):
@@ -239,7 +239,7 @@ def _texts(axis: Varied) -> list[str]:
 
 
 def _measure(plan: Plan, index: int) -> tuple[float, str]:
-    """Factor and unit of a reading: shares are in per cent."""
+    """Factor and unit of a quantity: shares are in per cent."""
     quantity = plan.readings[index]
     if quantity.is_share:
         return (100.0, "%")
@@ -247,14 +247,14 @@ def _measure(plan: Plan, index: int) -> tuple[float, str]:
 
 
 def counts(plan: Plan, rows: Sequence[Row]) -> str:
-    """Sentence on the endings of the runs."""
+    """Sentence on the numbers of runs by ending."""
     endings = Counter(row.ending for row in rows)
     message = ", ".join(f"{count} {ending}" for ending, count in endings.most_common())
     return f"{len(rows)} of {plan.size} runs: {message or 'none yet'}."
 
 
 def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
-    """Power of a logarithmic setting with which readings grow, a line per curve."""
+    """Lines on the power of a logarithmic setting with which quantities grow."""
     along, *others = plan.axes
     if not along.logarithmic or any(axis.is_numeric for axis in others):
         return []
@@ -275,7 +275,7 @@ def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
 
 
 def _power(sizes: Array, values: Array) -> float:
-    """Power of sizes with which values grow, (n,) each; only values above 0 count."""
+    """Power of sizes in values, (n,) each, by regression of positive values."""
     is_known = values > 0.0
     # A power law is a straight line in logarithms.
     size, value = np.log([sizes[is_known], values[is_known]])
@@ -283,7 +283,7 @@ def _power(sizes: Array, values: Array) -> float:
 
 
 def title_of(plan: Plan) -> str:
-    """Title of a sweep: its readings over its settings."""
+    """Title of a sweep: its quantities over its settings."""
     asked = ", ".join(_uncapitalised(quantity.title) for quantity in plan.readings)
     over = " and ".join(_uncapitalised(axis.title) for axis in plan.axes)
     return f"{plan.settings.scene.capitalize()}: {asked} over {over}"
@@ -314,7 +314,7 @@ def write_sweep(plan: Plan, rows: Sequence[Row], file: Path) -> None:
 
 
 def heads(plan: Plan) -> list[str]:
-    """Names of the columns: the run, its settings, its readings, and its ending."""
+    """Names of the columns: run, settings, quantities, ending."""
     varied = [axis.name for axis in plan.axes]
     return ["run", *varied, *plan.of, *AFTER]
 
@@ -337,7 +337,7 @@ def cells(plan: Plan, row: Row) -> list[object]:
 
 
 def csv_of(plan: Plan, rows: Sequence[Row]) -> str:
-    """Rows as CSV, after comments that begin with # and give the fixed settings."""
+    """Rows as CSV, after comment lines (#) with the fixed settings."""
     comments = "".join(f"# {line}\n" for line in head(plan))
     return f"{comments}{','.join(heads(plan))}\n{lines_of(plan, rows)}"
 
@@ -376,7 +376,7 @@ def _column(shown: Varied | Quantity) -> str:
 
 
 def rows_in(file: Path, plan: Plan) -> dict[int, Row]:
-    """Read the rows of a plan from a file, by their numbers.
+    """Read the rows of a plan from a file, by the number of their point.
 
     A last line without an end is left out. The table of another sweep is refused.
     """

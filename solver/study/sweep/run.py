@@ -1,4 +1,4 @@
-"""The runs of a sweep: the work of a process for one point, and rows as they come."""
+"""The runs of a sweep: a point in a process, and rows in order of completion."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ PATIENCE = 0.2
 
 @cache
 def versions() -> str:
-    """Versions of the packages and of the Python that results depend on."""
+    """Versions of Python and of the packages that results depend on."""
     packages = [f"{name} {version(name)}" for name in ("slipfront", "numpy", "scipy")]
     return ", ".join([*packages, platform.python_version()])
 
@@ -117,7 +117,7 @@ def _row_of(plan: Plan, number: int, finished: FinishedRun) -> Row:
 def _from_nearest(
     plan: Plan, sweep: str, number: int, warm: bool, end: float
 ) -> FinishedRun:
-    """Run a point, from the nearest run of this process in a sweep; keep its states."""
+    """Run a point from the states of the nearest run of this process; store states."""
     # States of an earlier sweep are no start for this one.
     if sweep not in _kept:
         _kept.clear()
@@ -142,7 +142,7 @@ def _from_nearest(
 
 
 def longest_wait(limit: float) -> float:
-    """Seconds after which a process is ended whose run has not ended by itself."""
+    """Time, s, after which the process of a run that does not end is ended."""
     return 1.5 * limit + 10.0
 
 
@@ -155,7 +155,7 @@ def sweep(
     warm: bool = True,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Iterator[Row]:
-    """Run the points of a plan, from neighbour to neighbour.
+    """Run the points of a plan in an order from neighbour to neighbour.
 
     Parameters
     ----------
@@ -204,14 +204,14 @@ def sweep(
 
 
 def snake(shape: Sequence[int]) -> list[int]:
-    """Numbers of the points of a grid, where each line goes back along the last one."""
+    """Indices of the points of a grid in an order from neighbour to neighbour."""
     grid = np.arange(math.prod(shape)).reshape(-1, shape[-1])
     grid[1::2] = grid[1::2, ::-1]
     return [int(number) for number in grid.ravel()]
 
 
 def _row(future: Future[Row], number: int, n_values: int) -> Row:
-    """Row of a run; a run whose process was ended has a row, too."""
+    """Row of a run, also of a run whose process was ended."""
     try:
         return future.result()
     except (SettingError, BrokenExecutor):
