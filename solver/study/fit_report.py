@@ -105,8 +105,8 @@ def _known(combination: Combination) -> str:
     ends = f"from {combination.lower:.4g} to {combination.upper:.4g}"
     return (
         f"Only {_product(combination)} is known: {combination.value:.6g} in SI units, "
-        f"with a standard error of {margin:.2g} % ({ends} with two), while each is "
-        f"within a factor of {combination.factor:g} of its value."
+        f"with a standard error of {margin:.2g} % ({ends} with two), as long as each "
+        f"stays within a factor of {combination.factor:g} of its value here."
     )
 
 
