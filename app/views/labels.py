@@ -344,7 +344,10 @@ def _apart(picture: Picture, words: Sequence[Word], obstacles: Obstacles) -> lis
         places = around(layout, word, MOST_ROWS)
         if not (meets(layout, word, placed) or obstacles.has_arrows_below(word)):
             # It stays unless its line alone is cut.
-            places = [word, *places] if burden(word)[1] else [word]
+            stays = [word]
+            if burden(word)[1]:
+                stays += places
+            places = stays
         free = [one for one in places if not meets(layout, one, placed)]
         placed.append(min(free, key=burden, default=word))
     return placed

@@ -101,6 +101,13 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
             return named(mesh)
         except RefusedError:
             raise
+        except ImportError as problem:
+            # Files of Salome, Exodus and others are read by packages that few have.
+            remedy = (
+                f"install what reads such files (pip install {problem.name}), or save "
+                "it again as Gmsh's .msh, format 4.1"
+            )
+            raise RefusedError("mesh", source, CAN, remedy) from None
         except (meshio.ReadError, *ERRORS) as problem:
             found = str(problem)
             if isinstance(problem, SystemExit):
@@ -146,7 +153,10 @@ def named(mesh: Any) -> NamedMesh:
                 "save the surfaces of a mesh in the plane alone",
             )
     bodies = {name: _of_one_kind(parts) for name, parts in surfaces.items()}
-    for name, edges in _along_named_points(mesh.point_sets, bodies):
+    point_sets = dict(mesh.point_sets)
+    for name, (points,) in _groups(mesh, "point_tags", mesh.point_data).items():
+        point_sets[name] = points
+    for name, edges in _along_named_points(point_sets, bodies):
         lines.setdefault(name, []).append(edges)
     return NamedMesh(
         points=_in_plane(mesh.points),
@@ -220,7 +230,8 @@ def _sets_by_size(mesh: Any) -> dict[str, list[Indices]]:
     all: meshio has a colon in these.
     """
     sets = dict[str, list[Indices]]()
-    for title, cells in mesh.cell_sets.items():
+    every_set = {**mesh.cell_sets, **_groups(mesh, "cell_tags", mesh.cell_data)}
+    for title, cells in every_set.items():
         name = title.partition(NUMBER)[0]
         if not name or ":" in name:
             continue
@@ -236,6 +247,27 @@ def _sets_by_size(mesh: Any) -> dict[str, list[Indices]]:
         return size == every, -size
 
     return {name: sets[name] for name in sorted(sets, key=rank)}
+
+
+def _groups(mesh: Any, families: str, data: Mapping[str, Any]) -> dict[str, Any]:
+    """Numbers of the points, or of the cells, in each group of a MED file.
+
+    Salome and code_aster write such files: every point or cell is of a family, by its
+    number, which is of several groups. `families` is the attribute of meshio's meshes
+    that tells the groups of each family, and the name of their numbers in `data`.
+    A group has an array of each block of cells, (n,), or one of points.
+    """
+    groups_of: Mapping[int, list[str]] = getattr(mesh, families, {})
+    numbers = data.get(families)
+    if numbers is None:
+        return {}
+    if families == "point_tags":
+        numbers = [numbers]
+    found = dict[str, Any]()
+    for name in sorted({name for names in groups_of.values() for name in names}):
+        own = [family for family, names in groups_of.items() if name in names]
+        found[name] = [np.flatnonzero(np.isin(each, own)) for each in numbers]
+    return found
 
 
 def _in_plane(points: Array) -> Array:

@@ -123,8 +123,8 @@ def _known(combination: Combination, called: Mapping[str, str]) -> str:
     product = _product(combination, called)
     return (
         f"Only {product} is known: {combination.value:.6g} in SI units, "
-        f"with a standard error of {margin:.2g} % ({ends} with two), while each is "
-        f"within a factor of {combination.factor:g} of its value."
+        f"with a standard error of {margin:.2g} % ({ends} with two), as long as each "
+        f"stays within a factor of {combination.factor:g} of its value here."
     )
 
 

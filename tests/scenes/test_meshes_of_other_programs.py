@@ -1,14 +1,16 @@
 """Names in meshes of programs other than Gmsh are bodies, contacts and sides."""
 
+import sys
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pytest
 
 from solver.discrete.plane.makers.named_mesh_refused import check_named
 from solver.files.meshes import text_of_mesh
 from solver.scenes import CATALOGUE
-from solver.scenes.mesh_files import as_text, read_mesh
+from solver.scenes.mesh_files import as_text, named, read_mesh
 from solver.scenes.named_sides import conditions_of, split_phrase
 from solver.settings.values import SettingError
 from tests.helpers.mesh_files import ABAQUS
@@ -168,3 +170,33 @@ def test_no_other_file_is_read_for_one_of_abaqus(line: str, tmp_path: Path) -> N
         except SettingError as refused:
             found = str(refused)
         assert "secret" not in found
+
+
+def test_groups_of_salome_are_bodies_contacts_and_sides() -> None:
+    """Two squares as meshio reads them from a MED file: groups by families."""
+    points = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [1, 2], [0, 2]], dtype=float)
+    squares = np.array([[0, 1, 2, 3], [3, 2, 4, 5]])
+    edges = np.array([[3, 2], [0, 1], [4, 5]])
+    tags = [np.array([-6, -7]), np.array([-8, -9, 0])]
+    mesh = meshio.Mesh(
+        points, [("quad", squares), ("line", edges)], cell_data={"cell_tags": tags}
+    )
+    mesh.point_data["point_tags"] = np.array([0, 0, 0, 0, 2, 2])
+    mesh.cell_tags = {-6: ["lower", "all"], -7: ["upper", "all"], -8: ["contact"]}
+    mesh.cell_tags[-9] = ["bottom"]
+    mesh.point_tags = {2: ["top"]}
+    found = named(mesh)
+    check_named(found)
+    assert found.names == ("lower", "upper")
+    assert [(contact.above, contact.below) for contact in found.contacts] == [(1, 0)]
+    sides = [(side.name, side.body) for side in found.sides]
+    assert sorted(sides) == [("bottom", 0), ("top", 1)]
+
+
+def test_a_file_that_takes_another_package_is_refused_with_its_name(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """`run` ended with the error of the import, of MED, XDMF, CGNS and Exodus."""
+    monkeypatch.setitem(sys.modules, "h5py", None)
+    with pytest.raises(SettingError, match="pip install h5py"):
+        text_of_mesh(b"anything", "plate.med")
