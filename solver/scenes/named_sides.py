@@ -168,9 +168,10 @@ class MeshSides:
                 other.body for other in self.mesh.sides if other.name == line.name
             }
             for deed in self.deeds[line.name]:
-                # Titles of quantities name a side that moves: "Force on top along y".
-                done = deed.replace("moved", "along")
-                name = f"{taken_apart(line.name)[0]} {done}"
+                # Titles of quantities name a side: "Force on top along y".
+                name = taken_apart(line.name)[0]
+                if deed in AXES:
+                    name = f"{name} {deed.replace('moved', 'along')}"
                 if len(bodies) > 1:
                     name = f"{name}, {self.mesh.names[line.body]}"
                 counts[name] = counts.get(name, 0) + 1
