@@ -221,7 +221,8 @@ class Display:
         )
         self.pulse.on_change("painted", lambda name, old, new: self._on_painted())
         state.param.watch(
-            lambda *events: self._update(), ["frame", "selection", "ghost", "is_new"]
+            lambda *events: self._update(),
+            ["frame", "selection", "ghost", "is_new", "is_dark"],
         )
 
     def look_at(self, views: list[View], also: Iterable[str] = ()) -> None:

@@ -177,6 +177,9 @@ def _divided(runs: Runs | None, x: float, y: float) -> Runs | None:
 def _in_unit(axis: PanelAxis, *values: Array) -> tuple[PanelAxis, float]:
     """An axis in a unit for values in SI, (n,) each, and the size of the unit."""
     sizes = np.abs(np.concatenate([[0.0], *values]))
+    if len(sizes) == 1 and axis.limits is not None:
+        # Before the first run it has the unit that it keeps.
+        sizes = np.abs(axis.limits)
     unit = unit_for(float(sizes[np.isfinite(sizes)].max()), axis.unit)
     limits = None
     if axis.limits is not None:

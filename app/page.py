@@ -154,8 +154,8 @@ class Page:
             sidebar_variant="persistent",
             raw_css=[LOADING],
             busy_indicator=None,
-            # As `theme` in the address has it.
-            dark_theme=pn.config.theme == "dark",
+            # As `theme` in the address has it, and a person chooses.
+            dark_theme=self.state.is_dark,
             sx=COMPACT,
             theme_config=HEADINGS,
         )
@@ -191,6 +191,9 @@ class Page:
         watch(lambda event: self._dress(), "view")
         watch(lambda event: self._show_controls(), "is_narrow")
         watch(lambda event: self._on_height(), "height")
+        self.template.param.watch(
+            lambda event: self.state.param.update(is_dark=event.new), "dark_theme"
+        )
         # A person may open or close the controls, too.
         self.template.param.watch(
             lambda event: self._on_controls(event.new), "sidebar_open"
@@ -404,7 +407,12 @@ def open_page() -> pmui.Page:
     shown, refusal = read(query)
     # As long as the browser has not told how wide its window is.
     is_phone = "Mobi" in pn.state.headers.get("User-Agent", "")
-    state = PageState(shown["settings"], refusal=refusal, is_narrow=is_phone)
+    state = PageState(
+        shown["settings"],
+        refusal=refusal,
+        is_narrow=is_phone,
+        is_dark=pn.config.theme == "dark",
+    )
     iteration = shown.pop("iteration", 0)
     show(state, shown)
     begin_with_class(state)

@@ -116,6 +116,7 @@ class PageState(param.Parameterized):
     is_narrow = param.Boolean(
         doc="Whether the window has no room for controls beside the run."
     )
+    is_dark = param.Boolean(default=False, doc="Whether the page is shown in the dark.")
     is_new = param.Boolean(
         doc="Whether marks in the picture say what is to be seen: on a first visit."
     )

@@ -94,6 +94,13 @@ class FitTab(CommandTab):
         super().show()
         self._draw()
 
+    def said(self, progress: str) -> str:
+        """Progress with titles of the settings, which the command calls by their keys."""
+        definitions = self.state.settings.definitions()
+        for name in self.chosen.value:
+            progress = re.sub(rf"\b{name}\b", title_of(definitions[name]), progress)
+        return progress
+
     def look(self) -> None:
         """Show the progress of the fit, and its nearest loop so far."""
         super().look()

@@ -85,6 +85,10 @@ class CommandTab(ABC):
         """Files of the last report."""
         return self._done.get(self.report, {})
 
+    def said(self, progress: str) -> str:
+        """What a command says of its progress, in the page's words."""
+        return progress
+
     def start(self) -> None:
         """Start the command, and end a running one."""
         self.end()
@@ -110,7 +114,7 @@ class CommandTab(ABC):
         job = self.job
         if job is None:
             return
-        progress = job.progress
+        progress = self.said(job.progress)
         if progress:
             progress = f"{self._started}: {progress}"
         self.progress.object = progress

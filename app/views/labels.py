@@ -113,10 +113,11 @@ class Obstacles:
 
     @cached_property
     def _shafts(self) -> Array:
-        """Points along all arrows, and along lines over their tails, (n, 2), px."""
+        """Points along all arrows, their heads, and lines over tails, (n, 2), px."""
         shares = np.linspace(0.0, 1.0, ALONG)[:, None]
         places = [np.zeros((0, 2))]
         for arrows in self._picture.arrows:
+            places.append(arrows.heads.reshape(-1, 2))
             for line in arrows.lines:
                 places.append(line[0] + shares * (line[-1] - line[0]))
             for first, last in pairwise(arrows.spread):

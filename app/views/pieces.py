@@ -14,7 +14,7 @@ from bokeh.events import Tap
 from app.frame import LINEAR, LOCAL, Frame, Selection
 from app.views.acts import gapped, hatched
 from app.views.axis import rounded_up
-from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO
+from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO, WRITTEN
 from app.views.parts import LEAST, bare
 from app.views.view import TEXT, ExtraView
 from app.worker.pieces import Pieces, StageFields
@@ -95,11 +95,11 @@ class PiecesView(ExtraView):
         for side in SIDES:
             self.add(f"macro {side}", color=MACRO[side], width=2.2)
             self.add(f"heads {side}", "Patches", "xs ys", color=MACRO[side])
-        self.add(
+        self._told = self.add(
             "words",
             "Text",
             "x y text",
-            text_color=EDGE,
+            text_color=WRITTEN[self.state.is_dark],
             text_font_size=TEXT,
             text_font=value("Roboto, sans-serif"),
             text_baseline="top",
@@ -185,6 +185,7 @@ class PiecesView(ExtraView):
         if len(lines) > self._rows:
             lines = textwrap.wrap(sentence, self._letters)
         height = self._size["inner_height"]
+        self._told.glyph.text_color = WRITTEN[self.state.is_dark]
         self.fill("words", x=[2.0], y=[height - 2.0], text=["\n".join(lines)])
 
     def _show_forces(self, extra: Pieces, stage: StageFields, column: int) -> None:

@@ -168,9 +168,10 @@ class MeshSides:
                 other.body for other in self.mesh.sides if other.name == line.name
             }
             for condition in self.conditions[line.name]:
-                # Titles of quantities name a side that moves: "Force on top along y".
-                done = condition.replace("moved", "along")
-                name = f"{split_phrase(line.name)[0]} {done}"
+                # Titles of quantities name a side: "Force on top along y".
+                name = split_phrase(line.name)[0]
+                if condition in AXES:
+                    name = f"{name} {condition.replace('moved', 'along')}"
                 if len(bodies) > 1:
                     name = f"{name}, {self.mesh.names[line.body]}"
                 counts[name] = counts.get(name, 0) + 1

@@ -134,11 +134,14 @@ def test_words_lie_beside_the_bodies(frame: Frame, scene: Scene, width: float) -
             assert not meet(box, low, high), (phase, text)
 
 
-@pytest.mark.parametrize("phase", [0.0, 0.25, 0.4, 0.8])
-def test_words_meet_no_arrow_at_the_end_of_a_body(phase: float) -> None:
+@pytest.mark.parametrize("phase", [0.0, 0.25, 0.4, 0.8, 0.96875])
+@pytest.mark.parametrize("size", [(910.0, 560.0), (390.0, 338.0)])
+def test_words_meet_no_arrow_at_the_end_of_a_body(
+    size: tuple[float, float], phase: float
+) -> None:
     frame = frame_of(LESSONS["two-points"].settings)
     view = shown(frame, phase)
-    view.lay_out(910.0, 560.0)
+    view.lay_out(*size)
     view.update(frame, Selection(phase), None)
     heads = view.sources["heads"].data
     x, y = (np.concatenate(heads[name]) for name in ("xs", "ys"))
