@@ -327,7 +327,6 @@ def _names_aside(picture: Picture, line: Array) -> list[Word]:
 
 
 def _apart(picture: Picture, words: Sequence[Word], obstacles: Obstacles) -> list[Word]:
-    """Words, moved up, down or aside, off earlier ones and off arrows.
     """Labels, moved up, down or aside, off earlier ones and off arrows.
 
     They go to the next place that bodies leave free, too, if there is one, and from

@@ -13,6 +13,7 @@ import io
 import struct
 import zipfile
 from collections.abc import Iterator, Mapping
+from itertools import chain
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import Any
@@ -230,7 +231,7 @@ def _sets_by_size(mesh: Any) -> dict[str, list[Indices]]:
     all: meshio has a colon in these.
     """
     sets = dict[str, list[Indices]]()
-    every_set = {**mesh.cell_sets, **_groups(mesh, "cell_tags", mesh.cell_data)}
+    every_set = mesh.cell_sets | _groups(mesh, "cell_tags", mesh.cell_data)
     for title, cells in every_set.items():
         name = title.partition(NUMBER)[0]
         if not name or ":" in name:
@@ -264,7 +265,7 @@ def _groups(mesh: Any, families: str, data: Mapping[str, Any]) -> dict[str, Any]
     if families == "point_tags":
         numbers = [numbers]
     found = dict[str, Any]()
-    for name in sorted({name for names in groups_of.values() for name in names}):
+    for name in sorted(set(chain.from_iterable(groups_of.values()))):
         own = [family for family, names in groups_of.items() if name in names]
         found[name] = [np.flatnonzero(np.isin(each, own)) for each in numbers]
     return found
