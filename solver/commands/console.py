@@ -91,6 +91,11 @@ def postponed_interrupt() -> Iterator[Callable[[], bool]]:
     Yields
     ------
     Whether Ctrl-C was pressed.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        At the end of the body, if Ctrl-C was pressed.
     """
     pressed = threading.Event()
     before = signal.getsignal(signal.SIGINT)

@@ -44,6 +44,11 @@ def iterations(
     Yields
     ------
     Snapshots, one per iteration; their seconds stand still while the consumer has one.
+
+    Raises
+    ------
+    RefusedError
+        For objects that are no problem, method or start, and a start of another shape.
     """
     check_value("problem", problem, InstanceOf(Problem))
     check_value("latin", latin, InstanceOf(Latin))

@@ -121,6 +121,11 @@ def named(mesh: Any) -> NamedMesh:
 
     Of quadratic elements the corners are taken. Quadrilaterals of a body that has
     triangles, too, become two of these.
+
+    Raises
+    ------
+    RefusedError
+        For elements of unknown kinds, and elements without a name.
     """
     surfaces = dict[str, list[Indices]]()
     lines = dict[str, list[Indices]]()
@@ -261,7 +266,13 @@ def _of_one_kind(parts: list[Indices]) -> Indices:
 
 
 def as_text(mesh: NamedMesh) -> str:
-    """Text of a mesh, which `from_text` reads."""
+    """Text of a mesh, which `from_text` reads.
+
+    Raises
+    ------
+    RefusedError
+        For a named line that is on no body.
+    """
     used = np.unique(
         np.concatenate([cells.ravel() for cells in mesh.surfaces.values()])
     )
@@ -283,7 +294,13 @@ def as_text(mesh: NamedMesh) -> str:
 
 
 def from_text(text: str) -> NamedMesh:
-    """Read a mesh from a text of `as_text`."""
+    """Read a mesh from a text of `as_text`.
+
+    Raises
+    ------
+    RefusedError
+        For a text that `as_text` did not make.
+    """
     try:
         data = base64.b64decode(text.removeprefix(HEAD), validate=True)
         found = _arrays_in(data)
