@@ -38,8 +38,8 @@ def iterations(
     problem, latin
         What to solve, and the method.
     start
-        State from which the run goes on. Without one the method has its own start, and
-        a body that contact alone holds starts where it comes to rest.
+        State from which the run continues. Without one the method has its own start,
+        and a body that contact alone holds starts where it comes to rest.
 
     Yields
     ------

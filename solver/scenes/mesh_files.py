@@ -221,8 +221,8 @@ def _sets_by_size(mesh: Any) -> dict[str, list[Indices]]:
     """Indices of the cells in each set for each block, (n,); the largest set first.
 
     An element in several sets is of the body of the first. Sets of all elements come
-    last, as they do not tell bodies apart, and those without a name of their own not at
-    all: meshio has a colon in these.
+    last, as they do not distinguish bodies, and those without a name of their own not
+    at all: meshio has a colon in these.
     """
     sets = dict[str, list[Indices]]()
     for title, cells in mesh.cell_sets.items():
