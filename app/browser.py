@@ -49,7 +49,7 @@ MET = "localStorage.setItem('slipfront', 'met')"
 """Script that notes that this browser has met the page."""
 SPEAK = "document.getElementById('spoken').textContent = browser.spoken"
 """Script that has a text spoken: in one element, of which screen readers follow the
-text. A pane of Panel makes its content anew, which they may pass over."""
+text. A pane of Panel makes its content again, which they may pass over."""
 GO = "if (browser.destination) { location.search = browser.destination }"
 """Script that opens the page of another address, also one that is there already."""
 FADE = """
@@ -58,7 +58,7 @@ style.setProperty("--seen", browser.is_stale ? 0.3 : 1)
 style.setProperty("--fading", browser.is_stale ? "0.1s 0.15s" : "0s")
 """
 """Script that fades what is of a run before the present one; a short wait is no change.
-A class of the page's columns would have Bokeh lay out all figures anew."""
+A class of the page's columns would have Bokeh lay out all figures again."""
 TELL = """
 // Once idle, React has shown all values, and sent back those that it sends back.
 const idle = window.requestIdleCallback ?? ((tell) => setTimeout(tell, 500))

@@ -40,7 +40,7 @@ class ClassDialog:
 
     def open(self) -> None:
         """Open the dialog."""
-        # It is filled anew: models that were taken off the page cannot come back.
+        # It is filled again: models that were taken off the page cannot come back.
         if self._member.leads:
             self.dialog[:] = self._led()
         else:

@@ -196,7 +196,7 @@ class Frame:
     """Scalars of every iteration so far, by the names of `solver.latin.Record`; each of
     shape (n_iterations,)."""
     status: Status | None = None
-    """Status with which the run ended; None while it goes on."""
+    """Status with which the run ended; None while it continues."""
     energy: float = float("nan")
     """Energy lost in the whole interval, J."""
     residual: float | None = None
@@ -226,7 +226,7 @@ class Frame:
     def stage(self) -> tuple[int, bool, bool]:
         """Key of the run's stage: number, is compared with a reference, is over.
 
-        Axes are chosen anew when it changes.
+        Axes are chosen again when it changes.
         """
         return self.run.number, bool(self.run.reference), self.status is not None
 

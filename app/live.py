@@ -161,7 +161,7 @@ class Live:
     def _shape(self) -> list[str]:
         """CSS classes that say what is shown, and where, all in one change.
 
-        Plots, if there are any, stand beside a high picture, and below a broad one.
+        Plots, if there are any, are next to a high picture, and below a broad one.
         While the question of a lesson is open, texts that give the answer away are
         hidden. Beside a text that tells what is seen a projector has no sentence on it.
         """

@@ -89,7 +89,7 @@ BARE = {
 class Page:
     """A page of one session: state, worker, widgets and views; `template` is served.
 
-    The first run waits at `iteration`; with 0 it goes on.
+    The first run waits at `iteration`; with 0 it continues.
     """
 
     def __init__(self, state: PageState, iteration: int = 0) -> None:
@@ -333,8 +333,8 @@ class Page:
         Beside hidden parts the browser does not paint figures.
         """
         # The text is hidden in its place: a row whose children change has all others
-        # rendered anew. Text and line of the class are put in front by the style sheet:
-        # a column whose children change their order loses some of them.
+        # rendered again. Text and line of the class are put in front by the style
+        # sheet: a column whose children change their order loses some of them.
         self._guide.view.visible = self._guide.is_open
         main = [self._tabs[self.state.tab]]
         roles = ["main", self.state.view]
@@ -392,7 +392,7 @@ def open_page() -> pmui.Page:
         # Signatures help an editor that completes code, and take 8 ms of each page.
         apply_signatures=False,
     )
-    # Panel sets this as it sends a page. One that is made anew by the socket, as its
+    # Panel sets this as it sends a page. One that is made again by the socket, as its
     # session had ended while a slow browser was still loading, is not sent: its style
     # sheets would be asked from the internet.
     pn.state.curdoc.template_variables["dist_url"] = LOCAL_DIST

@@ -223,7 +223,7 @@ class PageSocket(WSHandler):
     def ping(self, data: str | bytes = b"") -> None:
         """Ping the browser, unless the socket is closing.
 
-        `on_close` is about to let go of it. Bokeh would do so at once, and then once
+        `on_close` is about to release it. Bokeh would do so at once, and then once
         more, which is an error.
         """
         with suppress(WebSocketClosedError):

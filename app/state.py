@@ -233,7 +233,7 @@ class PageState(param.Parameterized):
     def is_asked(self) -> bool:
         """Check whether a lesson's question is unanswered.
 
-        In a class it is open until the leader goes on.
+        In a class it is open until the leader continues.
         """
         is_answered = self.prediction is not None
         if self.poll is not None:

@@ -60,7 +60,7 @@ OWNER = "after the linear stage that follows:"
 def status_line(state: PageState) -> str:
     """HTML of progress or end of the run, with the method's message as *details*.
 
-    Messages of the page stand beside it in one line, and in full in the details.
+    Messages of the page are next to it in one line, and in full in the details.
     """
     frame = state.frame
     newest = state.newest
@@ -187,7 +187,7 @@ def figures_line(frame: Frame, selection: Selection) -> str:
             value = 0.0
         figures[figure.title] = _unit_of(figure)(value)
         hints[figure.title] = _over_time(frame, figure)
-    # Springs stand beside the surfaces, and neither stick nor slip.
+    # Springs are next to the surfaces, and neither stick nor slip.
     springs = []
     for chain, interface in enumerate(run.interfaces.values()):
         if interface.is_spring:

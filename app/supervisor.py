@@ -27,7 +27,7 @@ class Supervisor:
     """Link between a page and its worker: orders to the worker, reports to the page.
 
     A worker that ends, hangs, or does not begin a run in time is replaced, and the run
-    begins anew; a run that has failed twice waits for another setting.
+    begins again; a run that has failed twice waits for another setting.
     """
 
     def __init__(self, state: PageState, document: Any) -> None:

@@ -158,7 +158,7 @@ class Transport:
     def _make_scrub(self) -> pmui.IntSlider:
         """Make the slider to go back through the iterations.
 
-        It counts from the newest iterate: so its value rests while a run goes on.
+        It counts from the newest iterate: so its value rests while a run continues.
         """
         slider = pmui.IntSlider(
             label="Iteration",

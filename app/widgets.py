@@ -19,7 +19,7 @@ from solver.files.templates import templates_in
 from solver.settings.scene import Icon
 
 TEMPLATES = templates_in(Path(__file__).parent)
-"""Templates of HTML: each stands beside its module, and is named by its path from
+"""Templates of HTML: each is next to its module, and is named by its path from
 here."""
 SHEET = (Path(__file__).parents[1] / "static" / "widgets.css").read_text(
     encoding="utf-8"

@@ -9,7 +9,7 @@ for _threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_threads, "1")
 
 # Ctrl-C while libraries are imported ends the process at once: one of them would else
-# be left half imported, and complain. Who ignores it from the start goes on to.
+# be left half imported, and complain. A process that ignores it continues to do so.
 _is_heard = signal.getsignal(signal.SIGINT) is signal.default_int_handler
 if _is_heard:
     signal.signal(signal.SIGINT, signal.SIG_DFL)

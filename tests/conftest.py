@@ -29,15 +29,15 @@ LONGEST_FIRST = (
     "test_installed_as_in_the_container",
     "test_measured_loops_are_fitted",
     "test_lessons",
-    "test_closed_pages_are_let_go",
+    "test_closed_pages_leave_no_memory",
     "test_random_settings",
-    "test_sweep_goes_on",
+    "test_sweeps_are_resumed",
     "test_friction_changes_with_slip",
     "test_controls",
     "test_free_hinges",
     "test_scene_view",
     "test_views",
-    "test_runs_say_what_to_know",
+    "test_remarks_on_runs",
     "test_paper_figures",
 )
 """Files of many seconds: whoever came to one of these last would work on alone."""

@@ -126,7 +126,7 @@ class FitTab(CommandTab):
             PanelCurve("measured", measured.displacement, measured.force, 5, "points")
         ]
         if self.job is not None:
-            # The command writes it anew whenever it has come nearer.
+            # The command writes it again whenever it has come nearer.
             file = self.job.folder / OUT / LOOP
             if file.exists():
                 _, across, up = pd.read_csv(file).to_numpy().T

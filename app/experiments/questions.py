@@ -77,7 +77,7 @@ class Question:
         """Settings of the runs that answer the question, from those of the page.
 
         Runs finish at once, as nobody watches them; where LATIN's own iterations are
-        counted, they go on to the accuracy of the question.
+        counted, they continue to the accuracy of the question.
         """
         if settings.finish == "none":
             return settings

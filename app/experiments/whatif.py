@@ -120,7 +120,7 @@ class WhatIf:
         """Show new runs of the sweep, and the progress of the study of meshes."""
         sweep = self.sweep
         job = self._job
-        # A chart is drawn anew only for rows that it does not show yet.
+        # A chart is drawn again only for rows that it does not show yet.
         if sweep is not None and self._seen != (len(sweep.rows), sweep.is_over):
             self._draw()
         if job is not None:
@@ -140,7 +140,7 @@ class WhatIf:
     def chart(self) -> Chart:
         """The chart of the runs so far."""
         plan = self.sweep.plan
-        # Its thread goes on to append to them.
+        # Its thread continues to append to them.
         rows = list(self.sweep.rows)
         is_log = SCALES[self._scale.value]
         chart = chart_of(plan, rows, 0, logarithmic=is_log)

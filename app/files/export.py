@@ -320,7 +320,7 @@ def _replay(page: Document, count: int, show: Callable[[int], None]) -> CustomJS
         show(number)
         for (model, name), values in changes.items():
             value = getattr(model, name)
-            # Lists and mappings of a model refer to it, and go on to change.
+            # Lists and mappings of a model refer to it, and continue to change.
             if isinstance(value, dict):
                 value = dict(value)
             elif isinstance(value, list):

@@ -12,7 +12,7 @@ from app.widgets import button, html, looks
 from solver.study.lessons import Lesson
 
 WITHOUT = -1
-"""Prediction that stands for a wish to see the answer without predicting."""
+"""Prediction that represents a wish to see the answer without predicting."""
 text_button = partial(button, margin=(3, 8, 3, 0))
 WIDE = {"margin": 0, "sizing_mode": "stretch_width"}
 """Look of what is as wide as the text."""
@@ -22,7 +22,7 @@ class Choices:
     """The choices of a lesson's question, or a class's counts in its answer (`view`).
 
     Buttons stay while predictions of others come in: a click on a button that is made
-    anew meanwhile is lost. `predict` takes the number of a choice, `open_counts` shows
+    again meanwhile is lost. `predict` takes the number of a choice, `open_counts` shows
     a class the number of predictions of each.
     """
 

@@ -47,7 +47,7 @@ a narrow window the page does."""
 class Guide:
     """The open lesson or case of a page, if any.
 
-    `view` stands beside the plots while one `is_open`, `dialogs` are the lists of all
+    `view` is next to the plots while one `is_open`, `dialogs` are the lists of all
     lessons and of all cases; `changed` is called when another lesson or case is shown.
     The transport plays the picture once a question is answered; `open_counts` shows a
     class the number of predictions of each choice.

@@ -251,7 +251,7 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
 def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str]:
     """Anchor, (2,), px, and side, as in `anchor_of`, of a load on the top or bottom.
 
-    The words stand beside its arrows where there is room, else over them.
+    The words are next to its arrows where there is room, else over them.
     """
     act = arrows.act
     up = OUTWARD[side][1]

@@ -57,7 +57,7 @@ class Axis:
     def hold(self, key: object, *curves: ArrayLike, margin: float = 0.0) -> None:
         """Extend the limits to curves in SI; limits are reset for another key.
 
-        With another key, as of another run, the axis chooses its unit anew. The margin
+        With another key, as of another run, the axis chooses its unit again. The margin
         is a share of the distance between the limits, and is left free on either side;
         a logarithmic axis shows whole decades.
         """

@@ -36,7 +36,7 @@ NAMED = 0.4
 NAME = 14.0
 ASKEW = 0.3
 """Distance of the name of a joint from its end, px, and slope of a joint from which on
-its name stands beside it and not above or below."""
+its name is next to it and not above or below."""
 ALONG = 9
 """Number of places along an arrow which words make way for."""
 HANDLE = 5.5

@@ -70,7 +70,7 @@ class Layout:
     the largest displacement takes `motion` px at most. Of each load `equals` are
     equal, itself included; 0 where an earlier one has their words. Keys stand below
     the bodies in `key_rows`, or at their left in a column of the width `column`, px, if
-    there are none. Words of loads on the left and right side stand beside these, or
+    there are none. Words of loads on the left and right side are next to these, or
     `in_rows` above all else.
 
     Bodies that stand upright, by the `surroundings` of a case, are laid out in a figure

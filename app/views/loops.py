@@ -35,7 +35,7 @@ from solver.study.quantities.cycles import n_cycles_of
 NOTHING = np.zeros((2, 0), dtype=np.float32)
 """A curve without points."""
 MOST_LOOPS = 12
-"""Largest number of loops that are drawn: more cannot be told apart."""
+"""Largest number of loops that are drawn: more cannot be distinguished."""
 FAR = 10.0
 """Half the length of a line in the plot of two slips, over the largest slip in it."""
 

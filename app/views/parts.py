@@ -73,7 +73,7 @@ def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
 def explain(bar: ColorBar, colors: LinearColorMapper, title: str | None = None) -> None:
     """Set colours, limits and title of a colour bar.
 
-    A bar is laid out anew for another mapper alone: with other limits or another title
+    A bar is laid out again for another mapper alone: with other limits or another title
     its values would be cut, and its title would lie on the plot.
     """
     shown = bar.color_mapper

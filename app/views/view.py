@@ -339,7 +339,7 @@ class View:
     def legend(self, *names: str, place: str = "above", **titles: str) -> Legend:
         """Name glyphs in a legend, in this order, by their names or by titles.
 
-        The legend shows copies of them without data, as Bokeh makes it anew whenever
+        The legend shows copies of them without data, as Bokeh makes it again whenever
         the data of a glyph in it change.
         """
         titles = {name: name for name in names} | titles

@@ -124,7 +124,7 @@ def cycles(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] |
 
     "columns" of the instants at which cycles begin, and the last one ends, (n_cycles +
     1,); "energy" that friction takes in each, (n_cycles,), J; "text", a sentence on how
-    slip goes on.
+    slip continues.
     """
     found = cycles_of(sampled.settings, iterate)
     if not len(found):

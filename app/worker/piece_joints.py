@@ -19,7 +19,7 @@ interface alone."""
 BENT = 0.05
 """Largest distance of a straight side from its chord, over half of that."""
 ASIDE = 0.1
-"""Angle between a chord and the direction that tells components apart, rad; share by
+"""Angle between a chord and the direction that distinguishes components, rad; share by
 which a side that is called tall is taller than wide."""
 
 
@@ -128,7 +128,8 @@ class PieceJoints:
 
         Of both rows at a node one is of either. Chords have the shape (n_rows, 2), m.
         """
-        # Turned a little: two directions that are askew by 45 degrees are told apart.
+        # Turned a little: two directions that are askew by 45 degrees are
+        # distinguished.
         cos = np.cos(ASIDE)
         sin = np.sin(ASIDE)
         turned = chords @ np.array([[cos, sin], [-sin, cos]])

@@ -50,7 +50,7 @@ class LastAnswer:
         """States as start of an ordered run; None to start from zero.
 
         A run that a changed method, a step or a reading asks for is there to be seen
-        from its own start, and so is one that is begun anew.
+        from its own start, and so is one that is begun again.
         """
         is_shown_from_start = order.pace == 0.0 or any(
             reading(name).reads for name in needs.readings

@@ -94,7 +94,7 @@ class Runner:
     """A run: first iteration, reference, then iterations when due.
 
     `interrupted` says that an order waits that ends the run, and `halted` that one is
-    there that ends or halts it: a status step is then given up until the run goes on.
+    there that ends or halts it: a status step is then given up until the run continues.
     `before` are states of a similar run, from which one status step may find the
     answer; else the run begins as its method says.
 
@@ -104,7 +104,7 @@ class Runner:
     changed since the last frame.
 
     A run does its first iteration, hurries on for a moment if a slider is dragged,
-    finds the reference, and goes on at the pace until its end.
+    finds the reference, and continues at the pace until its end.
     """
 
     def __init__(

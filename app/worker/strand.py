@@ -106,7 +106,7 @@ def strips_of(wires: OuterWires) -> tuple[dict[str, Any], Array, Indices]:
 class DrawnRope:
     """Strips of the wires in front, and a line of contact along each.
 
-    Under a uniform curvature one wire stands for a layer, and passes half a turn from
+    Under a uniform curvature one wire represents a layer, and passes half a turn from
     the outermost fibre to the innermost; the other half is its mirror image.
     """
 
@@ -179,7 +179,7 @@ class DrawnRope:
         sides = np.ones(len(positions), dtype=np.int8)
         share = positions / self._z[-1]
         if not self._rope.is_clamped:
-            # One wire stands for the layer: on its way back it slips the other way.
+            # One wire represents the layer: on its way back it slips the other way.
             turned = np.sign(self._wires.lay) * self._wires.angle(numbers, positions)
             wires = np.full(len(positions), self._first)
             share = np.arccos(np.cos(turned)) / np.pi

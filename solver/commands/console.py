@@ -91,11 +91,16 @@ def postponed_interrupt() -> Iterator[Callable[[], bool]]:
     Yields
     ------
     Whether Ctrl-C was pressed.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        At the end of the body, if Ctrl-C was pressed.
     """
     pressed = threading.Event()
     before = signal.getsignal(signal.SIGINT)
     is_main = threading.current_thread() is threading.main_thread()
-    # Who ignores Ctrl-C, as of "nohup", goes on to.
+    # A process that ignores Ctrl-C, as under "nohup", continues to do so.
     if not is_main or before is not signal.default_int_handler:
         yield pressed.is_set
         return

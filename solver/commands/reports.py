@@ -238,7 +238,7 @@ def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> N
         postponed_interrupt() as is_interrupted,
         opened(chosen.on, longest_wait(chosen.limit)) as executor,
     ):
-        # The table is written anew, as its last line may have been cut off.
+        # The table is written again, as its last line may have been cut off.
         write(table, csv_of(plan, list(rows.values())))
         runs = sweep(
             plan,

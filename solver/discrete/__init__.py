@@ -46,7 +46,7 @@ __all__ = [
 def discretise(structure: Structure) -> Problem:
     """Make the discrete problem of a structure.
 
-    Data of a structure does not know its mesher; a structure of one's own is added by
+    Data of a structure does not know its mesher; a structure of a user is added by
     `discretise.register`.
 
     Raises

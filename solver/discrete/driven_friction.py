@@ -4,8 +4,8 @@ At a driven point only the sum of friction and reaction is determinate, and a me
 that searches for both shares it out by its own parameters. While the point slips, its
 friction is its bound against the slip. While it stands still, as at a clamp, its
 friction per area is that of the nearest point that is free to slip, as far as its own
-bound allows: so friction goes on evenly up to the clamp of a body, and that of the last
-half element is not missing.
+bound allows: so friction continues evenly up to the clamp of a body, and that of the
+last half element is not missing.
 """
 
 from __future__ import annotations
@@ -150,7 +150,7 @@ def driven_friction(
     largest displacement that any of these values is a difference of, scaled.
     """
     dofs, values = prescribed
-    # The first pair of a point stands for all of them.
+    # The first pair of a point represents all of them.
     _, pairs = np.unique(law.points, return_index=True)
     sides = [row_dofs[rows[pairs]] for rows in law.tangent.sides]
     is_driven: NDArray[np.bool_] = np.all(

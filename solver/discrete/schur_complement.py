@@ -24,7 +24,7 @@ is condensed in 7 ms instead of 19, a rectangle of 500 and 140 in 3 instead of 7
 SOME = 50
 """Degrees of freedom that are kept, up to which their solutions cost less than that."""
 WIDE = 3
-"""Size of the last block of the factor, over that of what is kept, up to which it is
+"""Size of the last block of the factor, over that of the kept ones, up to which it is
 taken; of wires it is 1.2 to 1.3."""
 FEW = 16
 """Degrees of freedom that are kept, over columns, from which on these are solved for by
@@ -51,7 +51,7 @@ class Eliminated(Protocol):
     def recover(self, kept: Array, force: Array | None) -> Array:
         """Displacement of eliminated degrees of freedom, (n_rest, n_columns), scaled.
 
-        From that of what is kept, (n_kept, n_columns), and forces inside, (n_rest,
+        From that of the kept ones, (n_kept, n_columns), and forces inside, (n_rest,
         n_columns), or None.
         """
 
@@ -64,12 +64,12 @@ class FewEliminated:
     inner
         Stiffness of the rest, (n_rest, n_rest), dense or sparse.
     coupling
-        Its coupling with what is kept, (n_rest, n_kept).
+        Its coupling with the kept ones, (n_rest, n_kept).
 
     Raises
     ------
     np.linalg.LinAlgError
-        For a dense stiffness that could move while what is kept is held.
+        For a dense stiffness that could move while the kept ones is held.
     """
 
     def __init__(self, inner: sparse.csc_array | Array, coupling: Array) -> None:
@@ -103,7 +103,7 @@ class ManyEliminated:
     """Elimination by factors of the whole sparse stiffness with springs.
 
     The factor's last block is what elimination has made of the stiffness by then. For
-    an ordering by degree what is kept comes last, as if each of it were tied to all
+    an ordering by degree the kept ones comes last, as if each of it were tied to all
     others of it; a few of the rest that are tied to as many come between, and are
     eliminated from the dense block. A spring beside each that is kept makes a body
     that can move regular, and is taken off the block again.
@@ -120,7 +120,7 @@ class ManyEliminated:
     Attributes
     ----------
     condensed
-        Stiffness of what is kept, (n_kept, n_kept).
+        Stiffness of the kept ones, (n_kept, n_kept).
     """
 
     def __init__(self, factor: SuperLU, kept: Indices, spring: float) -> None:
@@ -233,7 +233,7 @@ class SchurComplement:
         self.kept = kept
         self._signs = np.ones(len(kept))
         self._before = None
-        # Positions of what is kept, and of the rest, in the whole stiffness.
+        # Positions of the kept ones, and of the rest, in the whole stiffness.
         positions = kept
         stiffness: sparse.csc_array | Array
         if isinstance(whole, SchurComplement):

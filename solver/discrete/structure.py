@@ -98,8 +98,8 @@ class Hold:
     Attributes
     ----------
     kind
-        A support is rigid and rough; below an image the bodies go on, turned by half a
-        turn; a spring pulls along x, at the foot of its side.
+        A support is rigid and rough; below an image the bodies continue, turned by half
+        a turn; a spring pulls along x, at the foot of its side.
     side
         Side of all bodies together.
     stretch
@@ -107,7 +107,7 @@ class Hold:
     moved
         Displacement of a clamp along x, shape (n_instants,), m, where it moves.
     gap
-        Opening of a support that goes on beyond the bodies, at nodes along it, shape
+        Opening of a support that continues beyond the bodies, at nodes along it, shape
         (n_nodes,), m.
     """
 

@@ -175,6 +175,12 @@ class Substructure:
         Of each there are its `dofs`, (n_dofs,), its `rows`, (n_boundary,), and the
         forces inside, (n_dofs, n_instants), scaled, or None; `check_forces` is for
         many of these.
+
+        Raises
+        ------
+        RefusedError
+            For degrees of freedom, rows and forces of different counts, and forces that
+            do not fit.
         """
         for name, each in (("dofs", dofs), ("rows", rows)):
             if len({len(numbers) for numbers in each}) > 1:

@@ -1,4 +1,4 @@
-"""A law of one's own: a damper F = F_d - c dW/dt, by backward Euler, on a bar."""
+"""A law of a user: a damper F = F_d - c dW/dt, by backward Euler, on a bar."""
 
 from dataclasses import dataclass, replace
 

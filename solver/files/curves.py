@@ -59,7 +59,13 @@ def curve_of(
 def columns_for(
     table: Table, definition: CurveParameter, name: str, units: Sequence[str]
 ) -> Sequence[TableColumn]:
-    """Columns of a curve in a table: by the head, else in order."""
+    """Columns of a curve in a table: by the head, else in order.
+
+    Raises
+    ------
+    SettingError
+        If the head names no columns, and the table has others than the curve.
+    """
     columns = table.columns
     names_quantities = any(column.is_known for column in columns)
     names_settings = any(column.key in _SETTINGS for column in columns)

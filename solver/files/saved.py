@@ -266,7 +266,13 @@ def placed(place: str) -> Iterator[None]:
 
 
 def scene_settings(scene: object) -> type[Settings]:
-    """Settings of a scene by its name in the catalogue."""
+    """Settings of a scene by its name in the catalogue.
+
+    Raises
+    ------
+    SettingError
+        For a name that no scene has.
+    """
     if scene is None:
         scene = Words("missing")
     if not isinstance(scene, str) or scene not in CATALOGUE:

@@ -116,7 +116,13 @@ def text_of(
 
 
 def lines_of_text(data: bytes | str, refuse: Refuse) -> tuple[str, list[Line]]:
-    """Separator of the columns of a file, and its lines but empty ones and rules."""
+    """Separator of the columns of a file, and its lines but empty ones and rules.
+
+    Raises
+    ------
+    SettingError
+        If the text cannot be read as CSV.
+    """
     texts = re.split(r"\r\n|\n|\r", text_of(data, refuse))
     filled = [
         (number, text) for number, text in enumerate(texts, start=1) if text.strip()

@@ -190,7 +190,7 @@ class Table:
         # column is named so outright.
         for rule in (has_key, is_word_for_it, ends_with_it, has_its_unit):
             likely = [column for column in columns if rule(column)]
-            # A column of words, such as the time of day, gives way to one of numbers.
+            # A column of words, such as the time of day, yields to one of numbers.
             with_numbers = [column for column in likely if self._has_numbers(column)]
             if with_numbers:
                 likely = with_numbers

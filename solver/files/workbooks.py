@@ -24,7 +24,13 @@ def is_archive(data: bytes) -> bool:
 
 
 def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
-    """Lines of the first sheet, without empty ones, and messages on the sheet."""
+    """Lines of the first sheet, without empty ones, and messages on the sheet.
+
+    Raises
+    ------
+    SettingError
+        Without openpyxl, and for a file that it cannot read.
+    """
     _check_archive(data, refuse)
     try:
         import openpyxl

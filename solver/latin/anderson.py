@@ -47,8 +47,8 @@ class Anderson:
     sum_j gamma_j (g_j - g_{j-1}), where gamma makes f_n - sum_j gamma_j (f_j - f_{j-1})
     smallest, has weights that add up to one, so it is admissible whenever its parts
     are. When the residual grows too far beyond the smallest, the memory is given up:
-    the plain iteration goes on from there, which does not diverge. Separated bases are
-    not mixed.
+    the plain iteration continues from there, which does not diverge. Separated bases
+    are not mixed.
     """
 
 
@@ -63,7 +63,7 @@ class AndersonState:
     problem, stage
         The problem, and its linear stage, whose state is mixed in place.
     motion
-        Motion of the rows that the local stage chooses anew at every instant, shape
+        Motion of the rows that the local stage chooses again at every instant, shape
         (n_rows,), or None. Residuals along it count for nothing.
     blocks
         Blocks of instants.

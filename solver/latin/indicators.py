@@ -85,7 +85,7 @@ however far the stages are apart, so that an early iterate shows where it slips.
 def contact_status(iterate: Stages, creep: Array | float = CREEP) -> NDArray[np.int8]:
     """Contact status of the local stage, shape (n_points, n_instants).
 
-    The values are those of `Iterate.status`. A point that comes to rest goes on
+    The values are those of `Iterate.status`. A point that comes to rest continues
     creeping in the local stage for a hundred iterations, by no more than the distance
     of both stages (measured). So a slip counts if it is larger than the largest
     distance of the stages in any slip of the interface, or than `creep` times the

@@ -52,7 +52,7 @@ class UpdateProgress:
 class Checkpoint:
     """State from which an iteration is resumed exactly, except its acceleration.
 
-    An acceleration begins anew.
+    An acceleration begins again.
 
     Attributes
     ----------

@@ -38,12 +38,17 @@ def iterations(
     problem, latin
         What to solve, and the method.
     start
-        State from which the run goes on. Without one the method has its own start, and
-        a body that contact alone holds starts where it comes to rest.
+        State from which the run continues. Without one the method has its own start,
+        and a body that contact alone holds starts where it comes to rest.
 
     Yields
     ------
     Snapshots, one per iteration; their seconds stand still while the consumer has one.
+
+    Raises
+    ------
+    RefusedError
+        For objects that are no problem, method or start, and a start of another shape.
     """
     check_value("problem", problem, InstanceOf(Problem))
     check_value("latin", latin, InstanceOf(Latin))

@@ -30,7 +30,7 @@ from solver.refusal import RefusedError
 
 SHARE = 1e-3
 """Share of the accuracy at which the k-free indicator ends a slab too: an estimate from
-changes needs eleven iterations, and a field that goes on as before needs one."""
+changes needs eleven iterations, and a field that continues as before needs one."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Slab:
     latin
         Method, with its k, which all slabs of an interval share.
     start
-        State from which the run goes on; None for the first slab.
+        State from which the run continues; None for the first slab.
     """
 
     instants: slice
@@ -201,8 +201,8 @@ def solve_in_slabs(
     """Solve the whole interval slab by slab, each to its stop rule.
 
     The first slab is certified if it can be, whatever the method says, as its error
-    would go on into all others. These end by estimate, as incremental solvers begin at
-    rest. The status is the first that is not convergence.
+    would continue into all others. These end by estimate, as incremental solvers begin
+    at rest. The status is the first that is not convergence.
 
     Parameters
     ----------

@@ -121,15 +121,15 @@ def judged(
 ) -> Iterator[tuple[Iterate, Decision]]:
     """Iterate, and judge every iterate by the stop rules.
 
-    The generator goes on though a decision says that the run ends. Where a status step
-    holds, its certified solution is the last iterate.
+    The generator continues though a decision says that the run ends. Where a status
+    step holds, its certified solution is the last iterate.
 
     Parameters
     ----------
     problem, latin
         The problem to be solved, and the method.
     start
-        State from which the run goes on, as for `iterations`.
+        State from which the run continues, as for `iterations`.
     spent
         Time that the run took before, to make the problem, s.
     interrupted

@@ -113,7 +113,7 @@ class Contact(Pairs):
         the image of the body lies below, which has no rows and moves the other way.
     copies
         Number of interfaces for which this one stands in sums over the structure that
-        is shown, as one wire of a layer stands for all: forces and energies of its
+        is shown, as one wire of a layer represents all: forces and energies of its
         points count as many times.
     """
 

@@ -1,6 +1,6 @@
 """The friction law: a spring in series with a slider (MATHEMATICS.md, 8 and 14).
 
-Asperities, or the part of a joint that no mesh shows, give way before they slip: along
+Asperities, or the part of a joint that no mesh shows, deform before they slip: along
 the interface a spring k_t is in series with a slider, whose friction force is at most
 
     b = g(s) min(r + mu N, cap),

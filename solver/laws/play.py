@@ -217,7 +217,7 @@ def _slip(
         zeros = np.zeros_like(after)
         share = np.divide(missing, missing - after, out=zeros, where=ends)
         within = slip + share * (ahead - slip)
-        # Points that stop on this segment, points that go on, and points that have
+        # Points that stop on this segment, points that continue, and points that have
         # stopped.
         slip = np.where(ends, within, np.where(left, ahead, slip))
         left &= ~ends

@@ -251,7 +251,7 @@ def of_whole_mesh(depth: Array, length: Array, *, on_support: bool) -> Array:
 
     About 1 of a body as large as the joint is long. A body of the depth d behind a
     joint of length l slides like a rod on another if it is thin, with d / l
-    (`SLENDER`), and is squeezed on a rigid support, with l / d. A large body gives way
+    (`SLENDER`), and is squeezed on a rigid support, with l / d. A large body deforms
     like a round one of radius r beside a contact of half width b, with 1 / C, where C =
     (2 ln(4 r/b) - 1) / pi (Johnson, Contact Mechanics, 1985, section 5.6).
 

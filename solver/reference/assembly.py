@@ -72,7 +72,7 @@ def jumps(problem: Problem) -> sparse.csr_array:
     columns = []
     values = []
     for law, _, _, forces in problem.contacts.stacks:
-        # All pairs of a point make the same jump, so its first pair stands for it.
+        # All pairs of a point make the same jump, so its first pair represents it.
         points, pairs = np.unique(law.points, return_index=True)
         for numbers, component in zip(forces, law.components, strict=True):
             for side, value in zip(component.sides, (1.0, -1.0), strict=False):

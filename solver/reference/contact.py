@@ -89,6 +89,11 @@ class IncrementalContact:
         stop
             Function called before each linear system; `Interrupted` is raised as soon
             as it returns True.
+
+        Raises
+        ------
+        Interrupted
+            If `stop` asks for it.
         """
         problem = self._problem
         condensed = self._condensed

@@ -194,7 +194,7 @@ def held_instants(problem: Problem, contact_force: Array) -> Flags:
 def are_independent(columns: Array) -> bool:
     """Check whether the columns of a matrix, (n, m), are linearly independent."""
     squares = np.linalg.eigvalsh(columns.T @ columns)
-    # Singular values are dearer, and tell columns apart that are nearly dependent.
+    # Singular values are dearer, and distinguish columns that are nearly dependent.
     if squares[0] > SURE * squares[-1]:
         return True
     return bool(np.linalg.matrix_rank(columns) == columns.shape[1])

@@ -10,7 +10,7 @@ from solver.arrays import Array, Indices
 SINGULAR = 1e-12
 """Pivot, as a share of the largest, below which a matrix is singular."""
 DOUBTFUL = 1e-6
-"""Evenness of the pivots of an update, below which the matrix is factored anew."""
+"""Evenness of the pivots of an update, below which the matrix is factored again."""
 
 
 class Factors:

@@ -54,7 +54,7 @@ class FrictionOverSlip:
     def left_after(self, slip: Array) -> FrictionOverSlip:
         """The same friction, which falls up to given slips only.
 
-        Where friction rises with slip it goes on to rise.
+        Where friction rises with slip it continues to rise.
 
         Parameters
         ----------

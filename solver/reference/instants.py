@@ -131,7 +131,7 @@ class Instants:
         load = (
             condensed.load[:, instant] - self._load - self.system.on_base(self._force)
         )
-        # Length before of what is in series with each jump.
+        # Length before of the spring in series with each jump.
         before = (
             rules.compliance * self._force - condensed.shift[:, instant] + self._shift
         )

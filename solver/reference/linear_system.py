@@ -25,7 +25,7 @@ LOOSE = 1e-14
 """Pivot, as a share of the largest stiffness of all jumps, below which a motion is
 free."""
 MANY = 200
-"""Unknowns from which on factors are updated: those of fewer are made anew as soon."""
+"""Unknowns from which on factors are updated: those of fewer are made again as soon."""
 CHANGED = 6
 """Factors are updated where at most one unknown in this number comes or goes: from step
 to step it is one in a hundred."""
@@ -63,13 +63,13 @@ class LinearSystem:
 
     The stiffness and gauge are those of the condensed structure, or others where
     springs hold it. Rows of the system are the jumps of the base that are free or have
-    something in series, and the jumps that follow from the base: on a wall a fifth of
+    a spring in series, and the jumps that follow from the base: on a wall a fifth of
     the jumps, fewer than its rigid motions.
 
     Attributes
     ----------
     unit
-        Stiffness of every jump alone, with what is in series, shape (n,), scaled.
+        Stiffness of every jump alone, with the spring in series, shape (n,), scaled.
     friction
         Coefficient mu of each jump, shape (n,).
     stop

@@ -34,9 +34,9 @@ def other_positions(
 ) -> dict[int, Array]:
     """Displacement of another solution at some instants of a known one, (n_dofs,), m.
 
-    Up to the instant before, both are the same. None is known where there is none, nor
-    where slip changes friction, contacts give way or were bonded, or where there are
-    too many bodies. Until contacts first carry a force bodies are at rest.
+    Both are equal up to the instant before. No other solution is sought where slip
+    changes friction, contacts are compliant or were bonded, or bodies are too many.
+    Until contacts first carry a force bodies are at rest.
 
     Parameters
     ----------

@@ -227,8 +227,8 @@ def _components(law: Contact, places: Indices) -> list[Rules]:
             compliance=law.in_parallel(law.normal.compliance),
         )
         rules.append(normal)
-        # Without friction what is in series along changes nothing, and tells the jump
-        # from others.
+        # Without friction the spring in series along changes nothing, and tells the
+        # jump from others.
         rubs = (bound > 0.0).any(axis=1) | (friction > 0.0)
         compliance = np.where(
             law.spread_to_interfaces(rubs), compliance, normal.compliance
@@ -258,7 +258,8 @@ class RightSides:
         Friction force r that needs no normal force, shape (n,).
     held
         Increment of a jump that is held, shape (n,): minus the opening of a normal
-        jump, 0 of a tangential one; with what is in series, its length before is added.
+        jump, 0 of a tangential one; with the spring in series, its length before is
+        added.
     """
 
     load: Array
@@ -282,7 +283,7 @@ class Increment(NamedTuple):
     Attributes
     ----------
     jump
-        Increments of all jumps, with the new length of what is in series, as
+        Increments of all jumps, with the new length of the spring in series, as
         `RightSides.held`, shape (n,), scaled.
     force
         Forces of all jumps at the end, shape (n,), scaled.

@@ -208,7 +208,7 @@ def slip_space(problem: Problem) -> SlipSpace:
     Raises
     ------
     NoReferenceError
-        Where contacts give way before they slip, friction changes with slip, nothing
+        Where contacts are compliant, friction changes with slip, nothing
         rubs, forces do not follow from jumps, or there are too many points.
     """
     if _count(problem) > MOST_POINTS:

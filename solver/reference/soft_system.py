@@ -20,7 +20,7 @@ from solver.reference.linear_system import LinearSystem, Solved
 from solver.reference.rules import RightSides, States
 
 SOFT = 1e3
-"""Stiffness of a jump over that of what is in series, from which on this is soft: of
+"""Stiffness of a jump over that of the spring in series, from which on this is soft: of
 twice as many digits the stiffness between the jumps has none left."""
 ROUNDS = 3
 """Number of times that the system is solved, each time for what is missing: the second

@@ -53,7 +53,7 @@ class Reference:
     rounding
         Largest part of `unbalanced` that rounding alone may leave, N.
     jumps_at
-        First instant that has no solution that goes on from the instant before, as
+        First instant that has no solution that continues from the instant before, as
         friction falls with slip faster than the structure unloads: what follows is
         another equilibrium, if any.
     is_lost

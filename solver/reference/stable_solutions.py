@@ -57,8 +57,8 @@ class Stability:
     def leave(self, at: InstantSolution, right_sides: RightSides) -> InstantSolution:
         """Disturb an unstable solution in its direction of instability.
 
-        All points that slip go on along the motion that costs least, until half of the
-        slip after which the first of them would stop.
+        All points that slip continue along the motion that costs least, until half of
+        the slip after which the first of them would stop.
         """
         direction = self._weakest_direction(at, right_sides)
         slip = np.abs(at.slip)

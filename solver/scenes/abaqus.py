@@ -70,7 +70,7 @@ def _blocks(text: str) -> Iterator[tuple[str, list[str]]]:
             head = line
             rows = []
         elif head.rstrip().endswith(","):
-            # A line of keywords may go on in the next one.
+            # A line of keywords may continue in the next one.
             head += line
         else:
             rows.append(line)

@@ -129,6 +129,11 @@ def named(mesh: Any) -> NamedMesh:
 
     Of quadratic elements the corners are taken. Quadrilaterals of a body that has
     triangles, too, become two of these.
+
+    Raises
+    ------
+    RefusedError
+        For elements of unknown kinds, and elements without a name.
     """
     surfaces = dict[str, list[Indices]]()
     lines = dict[str, list[Indices]]()
@@ -227,8 +232,8 @@ def _sets_by_size(mesh: Any) -> dict[str, list[Indices]]:
     """Indices of the cells in each set for each block, (n,); the largest set first.
 
     An element in several sets is of the body of the first. Sets of all elements come
-    last, as they do not tell bodies apart, and those without a name of their own not at
-    all: meshio has a colon in these.
+    last, as they do not distinguish bodies, and those without a name of their own not
+    at all: meshio has a colon in these.
     """
     sets = dict[str, list[Indices]]()
     every_set = mesh.cell_sets | _groups(mesh, "cell_tags", mesh.cell_data)
@@ -294,7 +299,13 @@ def _of_one_kind(parts: list[Indices]) -> Indices:
 
 
 def as_text(mesh: NamedMesh) -> str:
-    """Text of a mesh, which `from_text` reads."""
+    """Text of a mesh, which `from_text` reads.
+
+    Raises
+    ------
+    RefusedError
+        For a named line that is on no body.
+    """
     used = np.unique(
         np.concatenate([cells.ravel() for cells in mesh.surfaces.values()])
     )
@@ -316,7 +327,13 @@ def as_text(mesh: NamedMesh) -> str:
 
 
 def from_text(text: str) -> NamedMesh:
-    """Read a mesh from a text of `as_text`."""
+    """Read a mesh from a text of `as_text`.
+
+    Raises
+    ------
+    RefusedError
+        For a text that `as_text` did not make.
+    """
     try:
         data = base64.b64decode(text.removeprefix(HEAD), validate=True)
         found = _arrays_in(data)

@@ -175,7 +175,13 @@ class RopeSettings(Settings):
 
     @cached_property
     def section(self) -> CrossSection:
-        """Cross-section of the strand."""
+        """Cross-section of the strand.
+
+        Raises
+        ------
+        SettingError
+            For rows that are no possible strand, and too many wires.
+        """
         if isinstance(self.construction, str):
             return CONSTRUCTIONS[self.construction](self.layers)
         try:

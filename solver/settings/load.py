@@ -29,7 +29,7 @@ along the bar. Beyond, points are left out while the path stays within `THINNED`
 THINNED = 1e-3
 """Largest difference of a thinned path from its table, over the path's range."""
 POINTS = 9
-"""Points of a table that stands for a preset with curved parts."""
+"""Points of a table that represents a preset with curved parts."""
 STRAIGHT = 1e-9
 """Deviation of a straight part of a path by rounding, over the path's range."""
 

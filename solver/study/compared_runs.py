@@ -307,7 +307,7 @@ class ComparedRuns:
     def _stepped(self, best: Array, middle: Array, setting: int, step: float) -> Array:
         """Best z, shape (p,), of equal steps of a setting from the middle.
 
-        Steps go on while the misfit falls, and at first where it does not change, as
+        Steps continue while the misfit falls, and at first where it does not change, as
         where the start lets nothing slip.
 
         Parameters

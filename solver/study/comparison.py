@@ -163,7 +163,13 @@ def _refuse_nodal_forces(table: Table, column: TableColumn, unit: str) -> None:
 
 
 def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> Reading:
-    """Read columns, given with their units by name, as numbers in SI."""
+    """Read columns, given with their units by name, as numbers in SI.
+
+    Raises
+    ------
+    SettingError
+        For too many rows.
+    """
     count = len(table.lines)
     if count > MOST:
         raise table.refuse(f"it has {count} rows, and may have {MOST}: leave some out")

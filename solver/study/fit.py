@@ -5,10 +5,10 @@
 The differences of `solver.study.measured_loop` are minimised in the sum of their
 squares, over z: the logarithm of a setting over its start, where the setting is
 positive and spans decades, else its change over its size. From the best of some values
-of each setting alone a trust-region method (SciPy's `least_squares`) goes on within
+of each setting alone a trust-region method (SciPy's `least_squares`) continues within
 their bounds; every run starts from the states of the run before. Then the valley is
 followed along its weakest direction, both ways, and along each setting: where a run is
-nearer, the method goes on from there.
+nearer, the method continues from there.
 
 The profile likelihood of a setting shows how well the loop determines it
 (`solver.study.profile_likelihood`): beyond its two ends no run is as near, whatever the
@@ -235,7 +235,7 @@ def _blind(valley: Valley, is_known: Flags) -> Array:
 def _near_start(valley: Valley, blind: Array) -> Array:
     """Point z, (p,), on the floor of a valley, nearest to the start z = 0.
 
-    The place moves along the directions `blind`, (n, p), in which the valley goes on.
+    The place moves along the directions `blind`, (n, p), in which the valley continues.
     """
     runs = valley.runs
     # The pull is as strong as the loop is, so that it decides where the loop does not.
@@ -272,7 +272,7 @@ def _known_combinations(
     z
         Place on its floor, shape (p,).
     blind
-        Directions in which the valley goes on, shape (n, p).
+        Directions in which the valley continues, shape (n, p).
     is_known
         Whether a setting is known by itself, shape (p,).
     """
@@ -292,7 +292,7 @@ def _combinations(
 ) -> list[Combination]:
     """Determined combinations of undetermined settings, up to a distance in z.
 
-    `blind`, (n, p), are the directions in which the valley goes on, and `is_known`,
+    `blind`, (n, p), are the directions in which the valley continues, and `is_known`,
     (p,), says which settings are known.
     """
     is_open = np.flatnonzero(~is_known)
@@ -352,7 +352,7 @@ def _correlation(jacobian: Array, blind: Array, is_known: Flags) -> Array:
     jacobian
         Derivatives of the differences, shape (n_rows, p).
     blind
-        Directions in which the valley goes on, shape (n, p): they have no variance.
+        Directions in which the valley continues, shape (n, p): they have no variance.
     is_known
         Whether a setting is known, shape (p,).
     """

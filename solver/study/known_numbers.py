@@ -256,7 +256,7 @@ def _front(positions: Array, slip: Array) -> float:
 def growing_strength(answer: SolvedCase) -> Iterator[Number]:
     """Slip of a zone whose strength grows from the middle beyond the load.
 
-    The closed form leaves out that the last node that slips stands for half an element
+    The closed form leaves out that the last node that slips represents half an element
     that sticks.
     """
     settings = answer.settings

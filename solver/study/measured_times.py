@@ -115,7 +115,13 @@ class ErrorCurve:
 
 
 def error_against_time(settings: Settings, repeats: int) -> list[ErrorCurve]:
-    """Run every method `repeats` times, at least once, in turns; a curve for each."""
+    """Run every method `repeats` times, at least once, in turns; a curve for each.
+
+    Raises
+    ------
+    NoReferenceError
+        If the scene has no reference.
+    """
     problem = discretise(settings)
     reference = reference_of(problem)
     distance = distance_to(reference, problem)

@@ -110,7 +110,13 @@ def random_case(settings: Settings, seed: int, row: int) -> StabilityCase:
 
 
 def draw(scene: str, seed: int, row: int) -> Settings:
-    """Random settings of a run, determined by seed and row."""
+    """Random settings of a run, determined by seed and row.
+
+    Raises
+    ------
+    SettingError
+        If no settings within the limit of size are found.
+    """
     generator = np.random.default_rng([seed, row, *scene.encode()])
     kind = CATALOGUE[scene]
     last = SettingError(

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import frames
 import numpy as np
 import pytest
-import shaped
+import shaped_bodies
 from pictures import boxes_of_words, meet, shown
 from scipy.spatial import Delaunay
 from small_scenes import SMALL
@@ -115,7 +115,7 @@ def test_rims_run_along_the_outline_and_round_a_hole_but_not_along_cuts() -> Non
 
 
 def test_a_belt_is_a_band_that_lies_on_its_drum() -> None:
-    structure = shaped.belt(np.pi, 0.3, 1.2)
+    structure = shaped_bodies.belt(np.pi, 0.3, 1.2)
     thickness = BAND * structure.box[1].max()
     (drawing,) = drawings(structure)
     count = len(drawing.positions) // 2

@@ -31,7 +31,7 @@ from measure_page import ANSWER, ENDLESS
 # What tests share, too
 sys.path.insert(0, str(Path(__file__).parents[1] / "helpers"))
 from browser import Server, serving
-from visitors import Visitor
+from pages_without_browser import Visitor
 
 PACES = {"20 a second": ENDLESS, "whole in 3 s": ENDLESS.rpartition("&pace")[0]}
 SECONDS = 20.0

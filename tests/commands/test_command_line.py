@@ -184,7 +184,7 @@ def test_a_reference_that_is_not_wanted_or_too_large_is_left_out(
         (KeyboardInterrupt(), 130, "ended"),
     ],
 )
-def test_what_ends_a_command_from_outside_takes_a_line_and_has_its_code(
+def test_interrupts_end_a_command_with_a_line_and_their_code(
     trouble, code, message, monkeypatch, capsys
 ):
     def fail(*given, **options):
@@ -276,7 +276,7 @@ def test_a_command_that_does_not_exist_exits_2(arguments, capsys):
         (["linear_stage=pgd", "method=paper"], ""),
     ],
 )
-def test_what_a_run_does_not_heed_is_said(capsys, assignments, words):
+def test_ignored_settings_are_reported(capsys, assignments, words):
     changes = [f"--set={assignment}" for assignment in assignments]
     main(["run", "bar", *SMALL, "--set", "max_iterations=2", *changes])
     printed = capsys.readouterr()
@@ -349,7 +349,7 @@ def test_the_same_command_twice_gives_the_same_fields(tmp_path):
     assert all(np.array_equal(one, two) for one, two in zip(*fields, strict=True))
 
 
-def test_what_is_no_file_is_refused_before_the_run_and_left_as_it_is(capsys, tmp_path):
+def test_unwritable_targets_are_refused_before_the_run_and_unchanged(capsys, tmp_path):
     link = tmp_path / "link.npz"
     link.symlink_to("/dev/full")
     for place in ("/dev/full", str(link)):
@@ -384,7 +384,7 @@ def test_a_result_is_written_whole_or_not_at_all_before_anything_is_said(
     ]
 
 
-def test_whoever_reads_no_further_loses_no_file(tmp_path):
+def test_a_closed_pipe_loses_no_file(tmp_path):
     file = tmp_path / "bar.npz"
     reader, writer = os.pipe()
     os.close(reader)

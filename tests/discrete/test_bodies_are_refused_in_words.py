@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import shaped
+import shaped_bodies
 
 from solver.discrete import Beam, Bodies, Body, Held, Joint, Load, Mesh
 from solver.refusal import RefusedError
@@ -98,14 +98,14 @@ WRONG = {
 
 
 @pytest.mark.parametrize("words", WRONG)
-def test_what_cannot_be_is_refused_by_name(words: str) -> None:
+def test_inconsistent_bodies_are_refused_by_name(words: str) -> None:
     with pytest.raises(RefusedError) as caught:
         WRONG[words]()
     assert words in str(caught.value)
 
 
 def test_nodes_that_are_held_along_both_axes_are_clamped() -> None:
-    structure = shaped.arch(3, spread=1e-3)
+    structure = shaped_bodies.arch(3, spread=1e-3)
     described = structure.description()
     assert [footing.kind for footing in described.footings or ()] == ["clamp", "clamp"]
     for footing in described.footings or ():
@@ -116,13 +116,13 @@ def test_nodes_that_are_held_along_both_axes_are_clamped() -> None:
 
 
 def test_a_load_at_a_point_has_room_along_itself() -> None:
-    described = shaped.belt(np.pi, 0.3, 1.2).description()
+    described = shaped_bodies.belt(np.pi, 0.3, 1.2).description()
     for act in described.acts:
         direction = np.asarray(act.towards)[:, -1]
         assert abs(direction @ act.away) == pytest.approx(1.0)
 
 
-def test_what_is_described_lies_on_the_bodies() -> None:
+def test_described_loads_and_supports_lie_on_the_bodies() -> None:
     described = bodies().description()
     assert (described.length, described.height) == (1.0, 2.0)
     (act,) = described.acts

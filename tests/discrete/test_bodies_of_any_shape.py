@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from plane import whole_force_error
-from shaped import (
+from shaped_bodies import (
     arch,
     belt,
     block_on_ground,
@@ -202,7 +202,7 @@ def test_the_ground_carries_forces_and_moments_that_act() -> None:
     assert np.abs(moment).max() < 1e-10 * size
 
 
-def test_what_is_sheared_the_other_way_has_the_mirrored_forces() -> None:
+def test_opposite_shear_gives_mirrored_forces() -> None:
     structure = block_on_ground(BLOCK, sides(BLOCK, 4, 3))
     wanted = reference_of(discretise(structure)).contact("ground")
     (load,) = structure.loads

@@ -176,7 +176,7 @@ def by_place(problem: Problem) -> dict[tuple[Any, ...], int]:
 
 @pytest.mark.parametrize("kind", STACKS)
 @pytest.mark.parametrize("cuts", [(2, 1), (3, 2)])
-def test_what_the_cuts_add_condenses_to_the_uncut_stiffness_and_load(
+def test_cut_stiffness_and_load_condense_to_the_uncut_ones(
     kind: str, cuts: tuple[int, int]
 ) -> None:
     whole = discretise(pressed((1, 1), **STACKS[kind]))

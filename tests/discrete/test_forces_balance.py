@@ -338,7 +338,7 @@ LYING: dict[str, tuple[list[Brick], int]] = {
 
 @pytest.mark.parametrize("cuts", [1, 2])
 @pytest.mark.parametrize("name", LYING)
-def test_what_presses_a_partly_covered_body_stands_on_its_support(
+def test_pressure_on_a_partly_covered_body_balances_its_support(
     name: str, cuts: int
 ) -> None:
     """The top is all that lies open above: the load presses any piece it lies on."""
@@ -360,7 +360,7 @@ def test_what_presses_a_partly_covered_body_stands_on_its_support(
     np.testing.assert_allclose(np.sum(on_support, axis=0), pressed, rtol=1e-9)
 
 
-def test_a_press_moves_what_lies_farthest_up_however_bodies_are_cut() -> None:
+def test_a_moved_top_is_that_of_the_highest_bodies_however_they_are_cut() -> None:
     """A displacement of the top is that of a press, which touches no lower body."""
     stack = block(elements=(6, 4), cuts=(1, 1), bodies=2)
     still = SideComponent(True, 0.0 * stack.instants)

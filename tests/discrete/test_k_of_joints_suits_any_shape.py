@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from shaped import (
+from shaped_bodies import (
     arch,
     belt,
     block_on_ground,

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 from counting import calls_of
-from shaped import arch, courses_of_blocks
+from shaped_bodies import arch, courses_of_blocks
 
 from solver.discrete import Bodies, discretise
 from solver.scenes import CATALOGUE

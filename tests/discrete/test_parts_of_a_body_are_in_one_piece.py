@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from shaped import grid, in_triangles
+from shaped_bodies import grid, in_triangles
 
 from solver.arrays import Flags, Indices
 from solver.discrete import Beam, Bodies, Body, Joint, Load, Mesh, discretise

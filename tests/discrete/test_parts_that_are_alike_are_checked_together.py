@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from shaped import arch, grid
+from shaped_bodies import arch, grid
 
 from solver.arrays import Array, distinct
 from solver.discrete import Body, Joint, discretise

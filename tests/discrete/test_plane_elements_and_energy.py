@@ -94,7 +94,7 @@ def test_a_nearly_incompressible_bent_beam_does_not_lock():
 @pytest.mark.parametrize(
     "sides", [("bottom",), ("left", "top"), ("left", "right", "bottom", "top")]
 )
-def test_what_is_condensed_comes_back(sides):
+def test_condensed_displacements_are_recovered(sides):
     mesh = rectangle()
     random = np.random.default_rng(7)
     force = random.normal(size=(2 * mesh.n_nodes, 3))

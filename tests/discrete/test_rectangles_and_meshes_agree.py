@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from shaped import grid, sides
+from shaped_bodies import grid, sides
 
 from solver.arrays import Array
 from solver.discrete import (

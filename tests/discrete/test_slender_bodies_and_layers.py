@@ -106,11 +106,11 @@ def test_thin_layers_that_stick_come_within_one_percent_in_thirty_iterations(
 
 
 @pytest.mark.parametrize("place", [LOOK - 2, LOOK - 1, LOOK, LOOK + 4])
-def test_such_a_run_goes_on_from_any_checkpoint_to_the_bit(place):
+def test_a_run_of_layers_resumes_from_any_checkpoint_to_the_bit(place):
     assert_goes_on(settings_of("layers", **THIN, acceleration="none"), LOOK + 8, place)
 
 
-def test_what_nowhere_slips_is_solved_by_a_status_step_soon():
+def test_layers_that_stick_are_soon_solved_by_a_status_step():
     settings = settings_of("layers", **{**THIN, "instants": 81, "finish": "at-once"})
     solution = solve(discretise(settings), method_of(settings), watch=False)
     assert solution.is_certified

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import runpy
 from pathlib import Path
 from typing import Any
 
@@ -106,9 +107,13 @@ def test_a_quantity_is_a_function_of_a_run() -> None:
     assert (found.name, found.unit) == ("friction_power", "W")
 
 
-def test_a_law_is_a_local_stage(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_law_is_a_local_stage(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (program,) = blocks("law")
-    exec(compile(program, "law", "exec", dont_inherit=True), {"__name__": "law"})
+    file = tmp_path / "law.py"
+    file.write_text(program, encoding="utf-8")
+    runpy.run_path(str(file))
     ending, moved = capsys.readouterr().out.split()
     assert ending == "converged"
     assert float(moved) == pytest.approx(4.5e-4, rel=0.01)

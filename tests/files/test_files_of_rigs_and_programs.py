@@ -216,7 +216,7 @@ def test_a_loop_is_the_same_however_it_is_written(kind: str) -> None:
         ("inches and pounds", "t in s .no unit given., stroke in in, load in lbf"),
     ],
 )
-def test_what_was_understood_is_said(kind: str, said: str) -> None:
+def test_messages_state_how_a_table_was_understood(kind: str, said: str) -> None:
     message = loop_in(table_of(KINDS[kind]), AXES).message
     with pytest.raises(AssertionError, match=said):
         raise AssertionError(message)
@@ -266,7 +266,7 @@ def test_what_was_understood_is_said(kind: str, said: str) -> None:
     ],
     ids=lambda value: str(value)[:40],
 )
-def test_what_cannot_be_told_is_refused_with_its_place(
+def test_ambiguous_tables_are_refused_with_the_place(
     data: str | bytes, why: str
 ) -> None:
     with pytest.raises(SettingError, match=why) as caught:
@@ -339,7 +339,7 @@ def test_the_axes_of_a_loop_are_those_of_its_structure(scene: str) -> None:
     assert structure.axes == structure.loop(discrete.discretise(structure)).axes
 
 
-def test_what_is_a_thousand_times_off_the_run_is_doubted() -> None:
+def test_values_a_thousand_times_off_the_run_are_doubted() -> None:
     bare = loop_in(table_of(PLAIN.replace(" [mm]", "").replace(" [N]", "")), AXES)
     run = np.array(DISPLACEMENTS) * 1e-3, 2.0 * np.array(FORCES)
     (doubt,) = bare.unit_doubts(*run)

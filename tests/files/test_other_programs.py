@@ -149,7 +149,7 @@ def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
         (HEAD + "0.1,0,1\n" * 40_001, "has 40001 rows, and may have 40000"),
     ],
 )
-def test_what_cannot_be_compared_is_refused_with_what_to_do(
+def test_results_that_cannot_be_compared_are_refused_with_a_remedy(
     text: str, why: str
 ) -> None:
     with pytest.raises(SettingError, match=why) as caught:

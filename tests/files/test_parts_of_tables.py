@@ -137,7 +137,7 @@ def test_units_are_products_and_powers_and_convert_both_ways(
     assert size_in(given_unit, f"s or {unit}" if unit != "min" else unit) is not None
 
 
-def test_what_measures_something_else_has_no_size() -> None:
+def test_units_of_other_dimensions_do_not_convert() -> None:
     assert size_in("kN", "m") is None
     assert size_in("parsec", "m") is None
     column = column_of(0, 7, "force [kN]")
@@ -232,7 +232,7 @@ def test_a_link_stays_a_link_to_the_file_that_is_written(tmp_path: Path) -> None
     assert place.read_text() == "after"
 
 
-def test_what_is_too_large_no_file_or_not_there_is_refused(tmp_path: Path) -> None:
+def test_too_large_missing_and_other_files_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "large.csv"
     path.write_bytes(b"1" * LARGEST)
     assert len(read_bytes(path, refuse)) == LARGEST
@@ -319,7 +319,7 @@ def test_of_two_tables_that_with_more_rows_is_read_and_equals_are_refused() -> N
         read(twice)
 
 
-def test_what_is_no_table_is_refused() -> None:
+def test_texts_without_a_table_are_refused() -> None:
     with pytest.raises(SettingError, match="no text"):
         text_of(b"\x01\x02", refuse)
     with pytest.raises(SettingError, match="no points"):

@@ -119,7 +119,7 @@ def test_any_interface_of_a_series_is_compared(
         ),
     ],
 )
-def test_what_is_no_series_is_refused(
+def test_files_without_a_series_are_refused(
     content: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "other.pvd"

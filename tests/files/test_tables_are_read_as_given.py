@@ -272,7 +272,7 @@ def test_columns_are_chosen_by_name(text: str, points: list[list[float]]) -> Non
     ],
     ids=repr,
 )
-def test_what_may_be_read_otherwise_is_refused_with_its_reason(
+def test_tables_with_two_readings_are_refused_with_a_reason(
     text: str, remedy: str
 ) -> None:
     with pytest.raises(SettingError, match=remedy):

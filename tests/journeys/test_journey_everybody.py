@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator
 
 import pytest
+from accessibility import COLOURS, all_can_use
 from browser import Chrome, Server
-from everybody import COLOURS, all_can_use
 from pages import (
     ANSWER,
     MODEL,

@@ -11,8 +11,8 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any
 
+from accessibility import all_can_use
 from browser import ROOT, Chrome, Server
-from everybody import all_can_use
 from markup import MARKUP, watched
 from pages import (
     ANSWER,

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import pytest
+from accessibility import all_can_use
 from browser import Chrome, Server
-from everybody import all_can_use
 from pages import (
     ANSWER,
     Desk,
@@ -26,8 +26,8 @@ from pages import (
     status,
     visits,
 )
+from pages_without_browser import crowd
 from playwright.sync_api import Page, expect
-from visitors import crowd
 
 PRESS = "(pressed, at) => setTimeout(() => pressed.click(), at - Date.now())"
 """Script that presses an element at a time, ms since the epoch."""

@@ -99,7 +99,7 @@ def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(
 @pytest.mark.parametrize(
     ("scene", "is_by_increments"), [("bar", False), ("layers", True)]
 )
-def test_a_run_says_from_what_iterate_its_answer_is_and_whose(
+def test_a_run_says_from_which_iterate_its_answer_was_found(
     scene: str, is_by_increments: bool
 ) -> None:
     found = solved(CATALOGUE[scene]())
@@ -156,7 +156,7 @@ def test_seconds_include_all_that_the_stop_rules_take(
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_what_is_estimated_on_the_way_is_no_less_than_the_error(method: str) -> None:
+def test_estimates_during_a_run_are_no_less_than_the_error(method: str) -> None:
     found = solved(small("bar", method=method), watch=True)
     assert found.is_certified == (method == "fast")
     estimated, truth = np.transpose(
@@ -268,7 +268,9 @@ def test_a_status_step_that_is_halted_is_tried_again_at_the_next_iterate() -> No
 
 
 @pytest.mark.parametrize("value", ["0", "-1", "nan", "inf"])
-def test_a_limit_is_some_time(value: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_time_limit_is_positive(
+    value: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["run", "bar", "--limit", value]) == 2
     assert "--limit" in capsys.readouterr().err
 

@@ -77,7 +77,7 @@ def test_more_voussoirs_take_hardly_more_iterations():
         assert found[-1] <= 0.01
 
 
-def test_without_shifts_the_search_does_not_get_there():
+def test_without_shifts_the_search_does_not_converge():
     assert errors(arch(multiscale=False), ENOUGH).min() > 0.1
 
 

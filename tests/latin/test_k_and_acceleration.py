@@ -105,7 +105,7 @@ def test_a_millionth_of_friction_force_takes_at_most_150_iterations(load):
 
 
 @pytest.mark.parametrize("substructures", [1, 10])
-def test_it_makes_the_plain_iteration_shorter(substructures):
+def test_acceleration_shortens_the_plain_iteration(substructures):
     chosen = updating(substructures=substructures)
     updated, plain = (
         errors(one, 300) for one in (chosen, chosen.replace(k_update="none"))

@@ -55,7 +55,7 @@ def test_a_method_sets_all_its_parts_of_the_bar(method):
 
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))
-def test_what_is_called_a_default_is_what_the_fast_method_sets(scene):
+def test_defaults_are_the_values_of_the_fast_method(scene):
     kind = CATALOGUE[scene]
     assert kind.checked({}).method == "fast"
     assert (
@@ -84,7 +84,7 @@ def test_another_method_brings_its_parts_and_all_else_stays(method, change):
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("method_first", [True, False])
-def test_what_is_set_beside_a_method_is_kept_by_every_front(
+def test_values_set_besides_a_method_are_kept_by_files_and_commands(
     method, method_first, tmp_path
 ):
     named = {"method": method}

@@ -294,7 +294,7 @@ def test_the_indicator_has_no_scale_and_is_zero_where_the_stages_agree(
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_a_certified_solution_violates_no_law_and_what_is_beside_it_does(
+def test_a_certified_solution_violates_no_law_and_disturbed_ones_do(
     scene: str,
 ) -> None:
     iterate = certified_answer(
@@ -323,7 +323,7 @@ def test_statuses_of_a_certified_solution_are_those_of_the_reference(
     assert np.mean(status != wanted) <= 0.01
 
 
-def test_how_far_an_open_point_moves_does_not_say_what_slips_where_it_touches() -> None:
+def test_slip_is_judged_without_the_motion_of_open_points() -> None:
     """A slip that stages differ by is one beside the largest of those that touch."""
     of = on_a_support(np.random.default_rng(0), 2, 0.3, instants=1, gap=0.0)
     moved = np.array([[100.0], [1.0], [0.5], [0.0]])
@@ -435,7 +435,7 @@ def test_forces_of_rows_balance_bodies_and_cuts_and_are_the_smallest(
 
 
 @pytest.mark.parametrize("scene", ["bar", "strand"])
-def test_prolonged_to_its_own_mesh_a_solution_is_where_the_method_rests(
+def test_a_solution_prolonged_to_its_own_mesh_is_a_fixed_point(
     scene: str,
 ) -> None:
     of = scene_problem(scene)
@@ -448,7 +448,7 @@ def test_prolonged_to_its_own_mesh_a_solution_is_where_the_method_rests(
     assert close(first.displacement, solution.displacement, 1e-7)
 
 
-def test_what_a_coarse_mesh_represents_a_fine_one_begins_with_exactly() -> None:
+def test_fields_of_a_coarse_mesh_are_prolonged_exactly() -> None:
     """A bar without friction is stretched evenly: on any mesh the same."""
     values = {**SCENES["bar"], "friction": 0.0, "body_force": 0.0}
     fine = discretise(CATALOGUE["bar"].checked({**values, "elements": 40}))
@@ -459,7 +459,7 @@ def test_what_a_coarse_mesh_represents_a_fine_one_begins_with_exactly() -> None:
     assert close(outgoing, wanted, 1e-9)
 
 
-def test_a_start_refuses_bodies_in_the_plane_and_what_is_another_structure() -> None:
+def test_a_nested_start_refuses_bodies_in_the_plane_and_other_structures() -> None:
     block = discretise(CATALOGUE["block"].checked(SMALL["block"]))
     method = Latin(start=Nested(lambda: [block]))
     with pytest.raises(RefusedError, match="bodies in the plane is refused"):

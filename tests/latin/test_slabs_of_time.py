@@ -63,7 +63,7 @@ def cyclic(scene: str, cycles: int = 4, **changes: Any) -> Problem:
         ("incline", {}),
     ],
 )
-def test_they_have_the_solution_of_the_whole(
+def test_slabs_have_the_solution_of_the_whole_interval(
     scene: str, changes: dict[str, Any]
 ) -> None:
     problem = cyclic(scene, 3, **changes)
@@ -76,7 +76,7 @@ def test_they_have_the_solution_of_the_whole(
     assert found.records[-1].iteration == found.iterate.number
 
 
-def test_what_repeats_itself_takes_one_iteration() -> None:
+def test_a_periodic_slab_takes_one_iteration() -> None:
     problem = cyclic("block", 6)
     slab = first_slab(problem, ROUGH, CYCLE)
     counts = []
@@ -93,7 +93,7 @@ def test_what_repeats_itself_takes_one_iteration() -> None:
     assert distance.of_friction_force(whole.iterate) < 0.01
 
 
-def test_the_first_is_certified_and_all_are_on_one_clock() -> None:
+def test_the_first_slab_is_certified_and_all_are_on_one_clock() -> None:
     problem = cyclic("block", 3)
     distance = distance_of(problem)
     found = solve_in_slabs(problem, ROUGH, CYCLE, distance=distance, spent=100.0)
@@ -139,7 +139,7 @@ def test_the_command_solves_in_slabs(
         ("bar", {}, TIGHT, 0, "slab"),
     ],
 )
-def test_what_remembers_more_is_refused(
+def test_slabs_refuse_structures_with_more_memory(
     scene: str, changes: dict[str, Any], method: Latin, length: int, name: str
 ) -> None:
     with pytest.raises(RefusedError, match=f"^{name} = "):

@@ -54,7 +54,7 @@ def test_only_the_four_forces_at_an_inner_break_balance_each_other(wires):
 
 
 @pytest.mark.parametrize("grip", ["force", "displacement"])
-def test_where_nothing_rubs_the_force_error_is_relative_to_what_pulls(grip):
+def test_without_friction_the_force_error_is_relative_to_the_load(grip):
     settings = options(broken=0, wires=4, grip=grip)
     problem = discretise(settings)
     pull = settings.structure().load
@@ -137,13 +137,13 @@ def test_every_method_and_any_number_of_substructures_reach_the_same_solution(
     ],
     ids=str,
 )
-def test_what_makes_no_strand_is_refused_in_words(change, name, words):
+def test_inconsistent_strands_are_refused_in_words(change, name, words):
     with pytest.raises(SettingError, match=f"^{name} = ") as refused:
         StrandSettings.checked(change)
     assert words in str(refused.value)
 
 
-def test_changes_bring_along_what_could_not_stand_beside_them():
+def test_changes_adjust_values_that_would_be_inconsistent():
     settings = StrandSettings.checked({"broken": 3})
     assert settings.with_change("wires", 2).broken == 2
     assert settings.with_change("elements", 4).substructures == 4

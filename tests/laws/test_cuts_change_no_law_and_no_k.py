@@ -49,7 +49,7 @@ def whole_contact(normal: bool = False, **rest) -> Contact:
     )
 
 
-def test_a_point_without_friction_changes_nothing_of_how_others_share() -> None:
+def test_a_point_without_friction_does_not_change_the_shares_of_others() -> None:
     """Pairs share by their bounds wherever these are, and by their areas elsewhere."""
     law = cut_contact()
     bound = np.array([0.0, 0.3, 0.5, 0.1])
@@ -113,7 +113,9 @@ def test_k_of_a_body_is_in_proportion_to_its_modulus_and_to_area() -> None:
     assert wanted.reshape(4, 3)[:, 1] == pytest.approx(2.0 * wanted.reshape(4, 3)[:, 0])
 
 
-def test_k_of_a_rod_grows_with_stiffness_and_the_root_of_what_stays() -> None:
+def test_k_of_a_rod_grows_with_its_stiffness_and_the_root_of_the_sticking_length() -> (
+    None
+):
     law = whole_contact()
     plain, more, stiff = np.zeros((3, 3))
     RodStiffness().choose(law, plain, 1.0)

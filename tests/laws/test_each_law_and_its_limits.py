@@ -52,9 +52,7 @@ def glued(random: np.random.Generator) -> Perfect:
 
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("kind", [Dirichlet, Neumann, Perfect])
-def test_a_linear_law_holds_after_its_local_stage_and_not_beside_it(
-    kind, seed: int
-) -> None:
+def test_a_linear_law_holds_after_its_local_stage_only(kind, seed: int) -> None:
     random = np.random.default_rng(seed)
     if kind is Perfect:
         law = glued(random)
@@ -83,7 +81,7 @@ def noise(random: np.random.Generator) -> Array:
 
 
 @pytest.mark.parametrize("kind", [Dirichlet, Neumann])
-def test_a_law_of_some_instants_does_at_them_what_the_law_of_all_does(kind) -> None:
+def test_a_law_restricted_to_instants_agrees_with_the_whole_law(kind) -> None:
     random = np.random.default_rng(0)
     law = given_law(kind, random)
     some = slice(5, 11)
@@ -109,7 +107,7 @@ def test_a_side_that_is_very_stiff_prescribes_the_other_of_a_glued_cut() -> None
     assert moved[law.first] == pytest.approx(incoming[law.second], abs=1e-11)
 
 
-def test_cuts_that_are_joined_do_what_each_does() -> None:
+def test_joined_cuts_act_as_separate_ones() -> None:
     random = np.random.default_rng(2)
     rows = random.permutation(ROWS).reshape(4, 4)
     laws = [Perfect(rows[n], rows[n + 1], np.ones((4, 1))) for n in (0, 2)]
@@ -211,7 +209,7 @@ def test_a_local_stage_obeys_coulombs_law_and_action_is_reaction(
 
 @pytest.mark.parametrize("two", [False, True])
 @pytest.mark.parametrize("opens", [False, True])
-def test_what_is_beside_a_local_stage_violates_the_law(two: bool, opens: bool) -> None:
+def test_fields_off_the_local_stage_violate_the_law(two: bool, opens: bool) -> None:
     random, law = contact_of(3, opens=opens, two=two)
     displacement, force = local_stage(law, random)
     against = force.copy()
@@ -260,7 +258,7 @@ def test_known_friction_along_stiff_springs_is_the_play_operator() -> None:
     assert moved[above] == pytest.approx(play(incoming[above], slack), abs=1e-13)
 
 
-def test_a_law_begun_where_the_first_half_ended_goes_on_like_the_whole() -> None:
+def test_a_law_started_at_half_time_continues_the_whole() -> None:
     random, law = contact_of(13, opens=True, two=True)
     k = random.uniform(0.5, 2.0, ROWS)
     incoming = random.normal(size=(ROWS, TIMES))
@@ -375,7 +373,7 @@ def test_friction_of_a_kind_is_a_value_that_begins_as_it_was_made() -> None:
 
 
 @pytest.mark.parametrize("opens", [False, True])
-def test_interfaces_one_after_the_other_do_what_each_does(opens: bool) -> None:
+def test_concatenated_interfaces_act_as_separate_ones(opens: bool) -> None:
     _, first = contact_of(23, opens=opens, two=False)
     _, second = contact_of(29, opens=opens, two=False)
     random = np.random.default_rng(31)

@@ -80,7 +80,7 @@ def test_play_is_causal(case):
 
 @ANY
 @given(targets_and_reaches(varying=False), st.floats(0.0, 1.0))
-def test_instants_on_the_way_change_nothing(case, share):
+def test_instants_between_turning_points_change_nothing(case, share):
     target, slack = case
     between = target[:, :-1] + share * np.diff(target, axis=1)
     between = np.clip(
@@ -108,14 +108,14 @@ def test_a_closed_loop_inside_the_past_leaves_no_trace(case, turn):
 
 @ANY
 @given(arrays(float, SHAPES, elements=REAL))
-def test_without_reach_the_point_follows_and_with_infinite_reach_it_stays(target):
+def test_without_slack_a_point_follows_and_with_infinite_slack_it_stays(target):
     nothing = np.zeros(len(target))
     assert np.array_equal(play(target, nothing), target)
     assert not play(target, nothing + np.inf).any()
 
 
 @pytest.mark.parametrize("n_points", [1, 7, 200])
-def test_what_a_point_does_depends_on_no_other(n_points):
+def test_points_are_independent_of_each_other(n_points):
     random = np.random.default_rng(n_points)
     target = random.normal(size=(n_points, 23)).cumsum(axis=1)
     slack = random.uniform(0.0, 2.0, size=n_points)

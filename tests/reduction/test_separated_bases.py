@@ -179,7 +179,7 @@ def test_two_modes_find_the_solution_of_every_kind_of_scene(scene: str) -> None:
     assert last.iteration == before.iteration + 1
 
 
-def test_what_the_bases_alone_came_to_is_said(bar: Solution) -> None:
+def test_the_status_states_the_error_of_the_bases_alone(bar: Solution) -> None:
     left = bar.records[-2].error_force
     assert "status step" in bar.status.advice
     assert (

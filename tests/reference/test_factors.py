@@ -69,7 +69,7 @@ def test_an_equation_that_changes_is_removed_and_added(seed: int) -> None:
     assert factors.has_negative_determinant == (sign < 0.0)
 
 
-def test_what_would_lose_digits_is_doubtful() -> None:
+def test_updates_that_lose_digits_are_doubtful() -> None:
     matrix, before, removed, added = parts(3)
     changed = matrix.copy()
     place = before[~np.isin(before, removed)][0]

@@ -71,6 +71,6 @@ def test_a_cycle_of_a_quadratic_curve_dissipates_what_its_area_says() -> None:
     assert answer[199] == pytest.approx(answer[-1])
 
 
-def test_nothing_has_no_answer() -> None:
+def test_an_empty_load_has_an_empty_response() -> None:
     assert masing(np.zeros(3), grown).tolist() == [0.0, 0.0, 0.0]
     assert masing(np.zeros(0), grown).tolist() == []

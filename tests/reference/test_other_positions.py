@@ -65,7 +65,7 @@ def test_where_contacts_hold_all_bodies_there_is_no_other_position(
     assert other_positions(problem, found.displacement, found.contact_force) == {}
 
 
-def test_where_two_answers_part_either_may_stand_elsewhere() -> None:
+def test_where_two_answers_differ_another_position_exists() -> None:
     settings = CATALOGUE["arch"].checked(THICK | {"displacement": -3.655543e-4})
     problem = discretise(settings)
     answer = solve(problem, method_of(settings), watch=False)

@@ -119,7 +119,9 @@ def test_just_below_the_limit_a_coupled_block_ceases_or_not_by_its_start() -> No
         {"gap": "parabola"},
     ],
 )
-def test_where_nothing_is_known_there_is_no_factor(changes: dict[str, Any]) -> None:
+def test_without_a_theorem_there_is_no_shakedown_factor(
+    changes: dict[str, Any],
+) -> None:
     given = FREE | {"elements": 4, "elements_up": 2} | changes
     settings = CATALOGUE["block"].checked({**given, LOADS["block"]: path(1e-6)})
     assert not QUANTITIES["shakedown_factor"].applies(settings)

@@ -92,7 +92,7 @@ def test_a_load_that_nothing_feels_has_no_limit() -> None:
     assert limit("strand", **SMALL, peak=300.0, broken=0) == np.inf
 
 
-def test_what_the_theorem_does_not_cover_is_refused() -> None:
+def test_the_shakedown_limit_refuses_structures_beyond_the_theorem() -> None:
     block = {
         "elements": 6,
         "elements_up": 4,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from enumerated import numbers_of_equilibria
+from enumerated_states import numbers_of_equilibria
 from runs import settings_of
 
 from solver.reference.distance import kkt_residual

@@ -78,7 +78,7 @@ def test_jumps_and_glued_motions_span_every_displacement_once(seed: int) -> None
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_forces_that_move_nothing_are_all_that_there_are(seed: int) -> None:
+def test_self_stresses_are_complete(seed: int) -> None:
     jumps = random_jumps(seed, rings=True)
     size = jumps.shape[0]
     rigid = np.ones(size, dtype=bool)
@@ -90,7 +90,7 @@ def test_forces_that_move_nothing_are_all_that_there_are(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_what_has_something_in_series_follows_from_a_base_of_the_others(
+def test_jumps_with_springs_in_series_follow_from_a_base_of_the_others(
     seed: int,
 ) -> None:
     jumps = random_jumps(seed, rings=True)
@@ -386,7 +386,7 @@ def test_one_point_of_known_bound_is_the_play_operator(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_one_point_that_opens_is_play_with_the_pressing_force_for_its_reach(
+def test_one_point_that_opens_is_play_with_slack_by_the_pressing_force(
     seed: int,
 ) -> None:
     random = np.random.default_rng(seed)

@@ -171,7 +171,7 @@ def test_no_closed_form_is_drawn_where_none_holds(changes: dict[str, Any]) -> No
         ({"overpressure": -1.0}, "overpressure", "0"),
     ],
 )
-def test_what_would_open_the_fault_is_refused(
+def test_fluids_that_open_the_fault_are_refused(
     changes: dict[str, Any], name: str, words: str
 ) -> None:
     with pytest.raises(SettingError) as refused:

@@ -61,7 +61,7 @@ def test_first_bending_meets_the_closed_form(construction: str) -> None:
 
 
 @pytest.mark.parametrize("load", ["cycle", "random", "decaying"])
-def test_along_any_path_it_follows_masings_rule_with_memory(load: str) -> None:
+def test_a_strand_follows_masings_rule_along_any_path(load: str) -> None:
     settings = settings_of(load=load, curvature=0.12, instants=301, elements=80, seed=4)
     scene, found = solved(settings)
     exact = exact_of(settings).along(scene.curvature)
@@ -156,7 +156,7 @@ def test_many_supports_of_known_bound_are_solved_as_rods_with_every_wire() -> No
     assert arrays["status"].shape == (len(problem.contacts) * shape[0], shape[1])
 
 
-def test_what_is_no_strand_is_refused() -> None:
+def test_bad_strands_are_refused() -> None:
     section = seven_wire()
     with pytest.raises(RefusedError, match="lay angle"):
         CrossSection(section.core, (WireLayer(6, 5e-3, 2e11),))
@@ -244,7 +244,7 @@ WIRE = WireLayer(6, diameter=3e-3, young=2e11, lay=np.radians(12.0))
 BENT = BentWire(WIRE, radius=4e-3, strength=3000.0)
 
 
-def test_it_comes_nearer_with_order_two() -> None:
+def test_a_strand_converges_with_order_two() -> None:
     off = []
     for elements in (20, 40, 80, 160):
         settings = settings_of(

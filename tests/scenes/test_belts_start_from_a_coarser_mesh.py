@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from shaped import belt, leaf
+from shaped_bodies import belt, leaf
 
 from solver.discrete import discretise
 from solver.discrete.problem import Problem
@@ -81,7 +81,7 @@ def test_from_a_coarser_mesh_a_fine_belt_needs_few_iterations(changes):
 
 
 @pytest.mark.parametrize("changes", DRIVEN, ids=str)
-def test_carried_to_its_own_mesh_a_solution_is_where_the_method_rests(changes):
+def test_a_belt_solution_prolonged_to_its_own_mesh_is_a_fixed_point(changes):
     problem = problem_of(settings_of(elements=20, substructures=3, **changes))
     uncut = problem_of(settings_of(elements=20, substructures=1, **changes))
     k = problem.direction
@@ -95,7 +95,7 @@ def test_carried_to_its_own_mesh_a_solution_is_where_the_method_rests(changes):
         assert getattr(first, name) == pytest.approx(wanted, abs=1e-7 * size)
 
 
-def test_what_a_coarse_line_represents_a_fine_one_begins_with_exactly():
+def test_fields_of_a_coarse_line_are_prolonged_exactly():
     """Without friction a leaf that is pressed evenly is stretched evenly."""
     fine = discretise(leaf(24, friction=0.0, cuts=3))
     coarse = discretise(leaf(8, friction=0.0))
@@ -189,7 +189,7 @@ def test_short_waves_raise_k_on_a_support_alone():
     assert np.array_equal(automatic(problem, waves=2.0), plain)
 
 
-def test_waves_that_are_wrong_are_those_that_the_coarser_mesh_has_not():
+def test_wrong_waves_are_shorter_than_the_coarser_mesh_resolves():
     lengths = []
     for nodes in (21, 41):
         solution = reference_of(discretise(belt(np.pi, 0.3, 1.5, nodes=nodes)))

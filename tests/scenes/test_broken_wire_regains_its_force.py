@@ -61,7 +61,7 @@ def relative(found, exact):
     [{"peak": 437.0}, PAIR | GRIPPED | {"break_position": 0.3}],
     ids=["middle of three", "pair in a grip"],
 )
-def test_refinement_brings_it_to_the_closed_form(change):
+def test_a_broken_wire_converges_to_the_closed_form(change):
     errors = []
     for elements in (20, 80):
         scene, iterate = solved(
@@ -96,7 +96,7 @@ def test_the_closed_form_holds_on_any_tension_path(load):
     )
 
 
-def test_all_of_it_slips_where_friction_is_too_small_to_give_the_force_back():
+def test_a_broken_wire_slips_entirely_where_friction_is_too_small():
     scene, iterate = solved(**GRIPPED, load="ramp", peak=2000.0, friction=0.03)
     found = axial_forces(scene, iterate.displacement)[1, :, -1]
     place = (np.arange(60) + 0.5) / 60
@@ -105,7 +105,7 @@ def test_all_of_it_slips_where_friction_is_too_small_to_give_the_force_back():
     np.testing.assert_array_equal(status, np.repeat([-1, 1], 30))
 
 
-def test_without_friction_it_carries_nothing_and_the_others_what_the_grip_asks_for():
+def test_without_friction_a_broken_wire_carries_nothing():
     scene, iterate = solved(**GRIPPED, friction=0.0, wires=4)
     found = axial_forces(scene, iterate.displacement)
     np.testing.assert_allclose(found[1], 0.0, atol=1e-3)

@@ -176,7 +176,7 @@ def test_contacts_as_wide_as_wires_are_refused():
         settings_of(young=1e9)
 
 
-def test_a_sentence_tells_what_lies_where():
+def test_the_sentence_of_a_bundle_describes_its_arrangement():
     assert (
         settings_of()
         .sentence()

@@ -323,7 +323,7 @@ def test_a_fault_that_softens_is_solved_and_jumps_only_where_its_elements_are_to
     st.sampled_from([0.0, 0.4, 0.8, 2.0]),
     st.sampled_from([1e-8, 1e-6, 1e-5, 1e-4]),
 )
-def test_what_is_found_obeys_equilibrium_and_the_law_wherever_it_is_found(
+def test_solutions_with_changing_friction_obey_equilibrium_and_the_law(
     seed, scene, ratio, length
 ):
     random = np.random.default_rng(seed)

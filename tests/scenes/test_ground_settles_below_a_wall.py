@@ -203,7 +203,7 @@ def test_the_settlement_is_drawn_below_what_settles():
     assert settings.load_settings()["bottom y"] == "settlement"
 
 
-def test_what_the_case_says_to_change_first_is_so():
+def test_the_first_change_of_the_case_does_as_it_says():
     """A twentieth of a millimetre is enough; in stack bond nothing reaches over."""
     case = cases_by_name()["settling-ground"]
     found = {}

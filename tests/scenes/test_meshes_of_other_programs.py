@@ -90,7 +90,9 @@ PART = "*PART, NAME={0}\n" + ABAQUS + "*END PART\n*INSTANCE, NAME={0}-1, PART={0
         ("433 810 3 1 0\n1 0 0 0\n2 1 0 0\n", "save it again as Gmsh's"),
     ],
 )
-def test_what_would_be_another_mesh_is_refused(data: str, why: str) -> None:
+def test_files_with_parts_and_of_other_programs_are_refused(
+    data: str, why: str
+) -> None:
     """Parts lie where their instances say, and other programs name files alike."""
     with pytest.raises(SettingError, match=why):
         text_of_mesh(data.encode(), "squares.inp")

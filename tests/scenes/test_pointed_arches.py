@@ -100,7 +100,7 @@ def test_fine_stones_weigh_as_statics_says(voussoirs):
 
 @pytest.mark.parametrize(("voussoirs", "centres"), [(30, 1.0), (31, 1.0), (30, 0.5)])
 @pytest.mark.parametrize("name", ["thickness", "friction"])
-def test_it_falls_where_no_forces_in_its_joints_balance_its_weight(
+def test_a_pointed_arch_falls_where_no_forces_in_its_joints_balance_its_weight(
     voussoirs, centres, name
 ):
     settings = settings_of(

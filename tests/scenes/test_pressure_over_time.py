@@ -77,7 +77,7 @@ def test_finer_meshes_come_to_the_closed_form_with_order_two():
     assert errors[-1] < 1e-3
 
 
-def test_shaken_once_is_shaken_for_good():
+def test_slip_under_cyclic_pressure_ends_after_its_first_cycle():
     found = solved(rod(load="hold", peak=400.0, pressure_load="shaken", instants=241))
     end = found.end_displacement
     first = round(240 * (0.25 + 0.75 / 12))
@@ -87,7 +87,7 @@ def test_shaken_once_is_shaken_for_good():
 
 @DRAWN
 @given(st.lists(st.floats(-1500.0, 1500.0), min_size=8, max_size=8), FACTORS)
-def test_whatever_load_and_pressure_do_the_closed_form_is_the_references(load, factors):
+def test_closed_form_and_reference_agree_for_any_load_and_pressure(load, factors):
     scene = rod(elements=80, instants=9)
     pressure = np.array([1.0, *factors])
     scene = pulled(scene, [0.0, *load], strength=np.outer(scene.strength, pressure))

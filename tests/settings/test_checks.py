@@ -99,13 +99,13 @@ for one_kind, fine, wrong in KINDS.values():
 
 
 @pytest.mark.parametrize(("kind", "value"), ALLOWED)
-def test_what_is_allowed_has_no_flaw(kind: Kind, value: Any) -> None:
+def test_allowed_values_have_no_flaw(kind: Kind, value: Any) -> None:
     assert kind.flaw(value) is None
     check_value("Rope.length", value, kind)
 
 
 @pytest.mark.parametrize(("kind", "value"), REFUSED)
-def test_what_is_not_is_refused_in_a_line_with_the_name_and_what_is_allowed(
+def test_other_values_are_refused_in_a_line_with_name_and_allowed_values(
     kind: Kind, value: Any
 ) -> None:
     with pytest.raises(RefusedError) as caught:
@@ -160,7 +160,7 @@ def test_of_a_sequence_and_a_mapping_the_place_of_the_flaw_is_named() -> None:
     assert flaw.remedy.startswith('"b": ')
 
 
-def test_none_is_fine_where_it_is_the_default_and_nowhere_else() -> None:
+def test_none_is_allowed_only_as_a_default() -> None:
     check(Rope(), length=POSITIVE, turns=COUNT)
     check(Rope(2.0, 3), length=POSITIVE, turns=COUNT)
     with pytest.raises(RefusedError, match=r"^Rope\.turns = 0"):

@@ -59,7 +59,7 @@ def test_normal_values_are_positive_outward_and_tangential_ones_along_the_axis(
     assert not normal.slope.any()
 
 
-def test_only_what_a_side_uses_applies():
+def test_only_settings_of_the_kind_of_a_side_apply():
     settings = BlockSettings.checked({"left": "pushed", "right": "free"})
     applies = {name for name in settings.definitions() if settings.applies(name)}
     assert {"left_normal_displacement", "left_tangential_traction"} <= applies
@@ -134,7 +134,7 @@ def test_a_tall_block_is_said_to_tip_when_it_does_and_not_when_it_would_slide(sh
         (BlockSettings, {"height": 1e4}, "no side is more than 10000 times the other"),
     ],
 )
-def test_what_does_not_fit_together_is_refused_by_name(kind, values, name):
+def test_inconsistent_settings_are_refused_by_name(kind, values, name):
     assert name in refusal(kind, **values)
 
 

@@ -389,7 +389,7 @@ def test_a_problem_refuses_negative_numbers_of_its_substructures(name: str) -> N
         ((PROBLEM, Latin(), Checkpoint(3, 0.1, np.zeros((5, 5)))), r"start\.outgoing"),
     ],
 )
-def test_what_is_no_problem_no_method_or_no_start_does_not_run(
+def test_objects_that_are_no_problem_method_or_start_are_refused(
     arguments: tuple[Any, ...], name: str
 ) -> None:
     with pytest.raises(RefusedError, match=f"^{name} = "):
@@ -415,7 +415,7 @@ def accepted() -> list[Callable[[], object]]:
 
 
 @pytest.mark.parametrize("make", accepted())
-def test_what_is_allowed_is_not_refused(make: Callable[[], object]) -> None:
+def test_allowed_values_are_not_refused(make: Callable[[], object]) -> None:
     assert make() is not None
 
 

@@ -75,7 +75,7 @@ def wrong(draw):
 
 @settings(max_examples=200)
 @given(wrong())
-def test_what_is_no_value_of_a_setting_is_refused_with_what_is_allowed(case):
+def test_bad_values_of_settings_are_refused_with_the_allowed_ones(case):
     name, value, span, remedy = case
     text = refusal(lambda: BarSettings.checked({name: value}))
     assert_names(text, name, json.dumps(value)[:57], span)
@@ -92,9 +92,7 @@ def test_what_is_no_value_of_a_setting_is_refused_with_what_is_allowed(case):
         ("seed", "a whole number from 0 to 2147483647"),
     ],
 )
-def test_a_range_reads_as_one_says_it_and_ends_that_limit_nobody_stand_behind(
-    name, said
-):
+def test_ranges_read_naturally_and_remote_bounds_come_last(name, said):
     assert f"allowed: {said}; " in refusal(lambda: BarSettings.checked({name: "many"}))
 
 
@@ -126,7 +124,7 @@ def test_unknown_names_are_refused_with_the_nearest_ones_and_their_meaning(
 
 
 @pytest.mark.parametrize("name", REMOVED)
-def test_settings_that_are_gone_are_called_gone(name):
+def test_removed_settings_are_refused_as_removed(name):
     text = refusal(lambda: BarSettings.checked({name: 1.0}))
     assert f"it is gone: {REMOVED[name]}; leave it out" in text
 

@@ -38,7 +38,7 @@ def run(scene, **values):
 
 
 @pytest.mark.parametrize("scene", list(SMALL))
-def test_with_nothing_given_it_is_coulombs(scene):
+def test_the_default_friction_law_is_coulombs(scene):
     assert chosen(scene, **GENERAL).law == FrictionLaw()
 
 
@@ -260,7 +260,7 @@ def test_a_strength_is_read_from_a_file(tmp_path):
     assert settings.strength == ((0.0, 1.0), (1e-4, 1.4), (1e-3, 0.3))
 
 
-def test_what_is_known_of_coulombs_friction_alone_is_not_said_of_others():
+def test_closed_forms_of_coulombs_law_are_not_shown_for_other_laws():
     cycles = {"cycles": 3, "load": "cycle", "instants": 41}
     assert has_a_limit(chosen("bar", **GENERAL, cohesion=100.0, **cycles))
     assert not has_a_limit(chosen("bar", **GENERAL, strength="linear", **cycles))

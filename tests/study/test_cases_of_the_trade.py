@@ -75,11 +75,11 @@ def test_the_first_change_does_what_a_case_says(name, changes, quantity, low, hi
     assert low <= reading(quantity)(run) <= high
 
 
-def test_they_join_the_proof() -> None:
+def test_cases_are_part_of_the_proof() -> None:
     assert {case.title for case in CASES} <= {known.title for known in proof.cases()}
 
 
-def test_there_is_one_of_every_order_and_each_says_who_knows() -> None:
+def test_cases_have_orders_of_their_own_and_a_source() -> None:
     assert [case.order for case in CASES] == list(range(1, len(CASES) + 1))
     assert len({case.title for case in CASES}) == len({case.picture for case in CASES})
     for case in CASES:
@@ -122,7 +122,7 @@ def test_the_proof_takes_a_case_of_ones_own(
         ({"setting": "[picture]"}, ["picture"]),
     ],
 )
-def test_what_is_wrong_with_a_case_is_said_with_its_file_and_place(
+def test_errors_in_a_case_are_reported_with_file_and_place(
     tmp_path: Path, changes: dict[str, str], words: list[str]
 ) -> None:
     with pytest.raises(SettingError) as refused:

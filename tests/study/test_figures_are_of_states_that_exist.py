@@ -205,7 +205,7 @@ def test_a_wall_that_falls_has_no_distance_to_a_measured_loop(
     assert "no solution" in printed.err
 
 
-def test_names_that_are_gone_are_told_by_their_new_ones() -> None:
+def test_removed_names_of_quantities_are_refused_with_the_new_ones() -> None:
     for name, new in (("energy", "dissipation"), ("slipping", "slipped_share")):
         assert name not in QUANTITIES
         with pytest.raises(SettingError, match=f"{name} is called {new}"):

@@ -109,7 +109,7 @@ def test_a_lesson_is_what_its_file_says(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_what_is_wrong_with_a_lesson_is_said_with_file_key_value_and_what_is_allowed(
+def test_errors_in_a_lesson_are_reported_with_file_key_value_and_allowed_values(
     tmp_path: Path, key: str, value: str | None, words: list[str]
 ) -> None:
     said = refusal(tmp_path, written({key: value}, {}))
@@ -130,7 +130,7 @@ def test_what_is_wrong_with_a_lesson_is_said_with_file_key_value_and_what_is_all
         ({"expected": "3", "tolerance": "-1"}, ["tolerance = -1"]),
     ],
 )
-def test_what_is_wrong_with_a_checkpoint_is_said_with_its_number(
+def test_errors_in_a_checkpoint_are_reported_with_its_number(
     tmp_path: Path, claim: dict[str, str | None], words: list[str]
 ) -> None:
     said = refusal(tmp_path, written({}, claim))
@@ -138,7 +138,7 @@ def test_what_is_wrong_with_a_checkpoint_is_said_with_its_number(
     assert not [word for word in words if word not in said], said
 
 
-def test_what_is_no_lesson_at_all_is_refused_in_a_line(tmp_path: Path) -> None:
+def test_files_without_a_lesson_are_refused_in_a_line(tmp_path: Path) -> None:
     assert "small.toml: lesson" in refusal(tmp_path, "no TOML")
     claims_nothing = written({}, {}).partition("[[")[0] + "checkpoints = []"
     assert "checkpoints = []" in refusal(tmp_path, claims_nothing)
@@ -198,13 +198,13 @@ def outcomes(name: str) -> list[tuple[bool, str]]:
 
 
 @pytest.mark.parametrize(("name", "number"), CHECKPOINTS)
-def test_what_a_lesson_claims_is_measured(name: str, number: int) -> None:
+def test_claims_of_lessons_hold_in_runs(name: str, number: int) -> None:
     holds, line = outcomes(name)[number]
     assert holds, line
 
 
 @each
-def test_what_a_lesson_shows_is_there_and_moves_only_after_the_choice(
+def test_plots_and_controls_of_a_lesson_exist_and_its_answer_is_hidden_first(
     lesson: Lesson,
 ) -> None:
     assert {lesson.interface} <= {"", *discretise(lesson.settings).contacts}

@@ -76,7 +76,7 @@ def made(
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_what_a_run_finds_is_compared_with_or_without_times(scene: str) -> None:
+def test_loops_are_compared_with_or_without_times(scene: str) -> None:
     run = run_of(scene)
     finds_force = beside(run, loop_from(run)).finds_force
     assert finds_force == (scene not in ("bar", "strand", "fault", "belt"))
@@ -202,7 +202,9 @@ def test_tables_without_a_loop_are_refused_in_words(text: str, why: str) -> None
         ),
     ],
 )
-def test_a_fit_finds_what_made_the_loop(law: dict, true: dict, start: dict) -> None:
+def test_a_fit_finds_the_settings_of_the_loop(
+    law: dict, true: dict, start: dict
+) -> None:
     settings = scene_settings("bar").checked(law | start)
     found = fit(settings, made(true, settings), list(true))
     assert found.nearest.values == pytest.approx(list(true.values()), rel=1e-6)
@@ -211,7 +213,7 @@ def test_a_fit_finds_what_made_the_loop(law: dict, true: dict, start: dict) -> N
     assert messages(found) == []
 
 
-def test_with_noise_what_made_the_loop_is_within_two_standard_errors() -> None:
+def test_with_noise_the_settings_of_the_loop_are_within_two_standard_errors() -> None:
     """At least three in four values are; 95 % are expected."""
     true = {"friction": 0.37, "contact_stiffness": 8.0}
     settings = scene_settings("bar").checked(
@@ -227,7 +229,7 @@ def test_with_noise_what_made_the_loop_is_within_two_standard_errors() -> None:
     assert np.mean(within) >= 0.75
 
 
-def test_what_is_known_as_a_product_alone_stays_near_its_start() -> None:
+def test_settings_determined_as_a_product_only_stay_near_their_start() -> None:
     """Displacement under a given force knows mu p alone."""
     true = {"friction": 0.37, "pressure": 6000.0}
     settings = scene_settings("bar").checked(
@@ -245,7 +247,7 @@ def test_what_is_known_as_a_product_alone_stays_near_its_start() -> None:
     assert "does not tell friction and" in apart
 
 
-def test_what_the_loop_says_nothing_of_stays_where_it_began() -> None:
+def test_undetermined_settings_stay_at_their_start() -> None:
     stuck = scene_settings("bar").checked(
         SPRUNG | FEW | {"friction": 1e5, "contact_stiffness": 20.0}
     )

@@ -94,7 +94,7 @@ def test_the_bar_slips_as_far_as_its_load_reaches() -> None:
         ("incline", {"slope": 20.0, "friction": 0.3, "slack": 1e-3}, math.nan),
     ],
 )
-def test_what_holds_as_a_whole_takes_the_load_over_what_presses(
+def test_holding_friction_is_load_over_pressing_force(
     scene: str, changes: dict[str, Any], exact: float
 ) -> None:
     """F / (p L) where slip has not come to the clamp, and the tangent of a slope."""
@@ -114,7 +114,7 @@ def test_what_holds_as_a_whole_takes_the_load_over_what_presses(
         ("incline", {"slope": 20.0, "friction": 0.5, "weight": 2e3}, 940.0),
     ],
 )
-def test_what_friction_could_hold_is_mu_times_all_that_presses(
+def test_holding_force_is_mu_times_the_pressing_force(
     scene: str, changes: dict[str, Any], most: float
 ) -> None:
     """mu p L along the bar, mu W cos(slope) on the incline."""
@@ -193,7 +193,7 @@ def test_a_block_that_only_its_side_holds_presses_on_nothing() -> None:
     assert {name: taken(name, run) for name in names} == dict.fromkeys(names, 0.0)
 
 
-def test_what_holds_one_side_balances_the_other() -> None:
+def test_reactions_of_both_sides_balance() -> None:
     """Layers bent at one end and held at the other carry nothing else along y."""
     run = ran("layers", elements=12, instants=11, substructures=2)
     assert taken("left_force", run) == pytest.approx(
@@ -300,7 +300,7 @@ def test_the_spring_carries_a_weight_that_nothing_else_holds() -> None:
         ("layers", {"elements_up": 2, "bending": "moment"}),
     ],
 )
-def test_a_quantity_that_does_not_apply_is_one_that_the_run_does_not_have(
+def test_quantities_apply_where_runs_have_them(
     scene: str, changes: dict[str, Any]
 ) -> None:
     run = ran(scene, errors=True, **(SMALL | changes))
@@ -314,7 +314,7 @@ def test_a_quantity_that_does_not_apply_is_one_that_the_run_does_not_have(
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)
-def test_what_is_zero_is_shown_as_zero_and_not_as_what_rounding_leaves(
+def test_zero_quantities_are_shown_without_rounding_errors(
     scene: str,
 ) -> None:
     """Also at iterates on the way, such as one at which nothing touches yet."""
@@ -388,13 +388,13 @@ STEADY = [[2, 2, 2]]
         (STEADY, [[1, 0.8, 0.6]], "steady slip"),
     ],
 )
-def test_slip_is_called_what_it_has_been_for_three_cycles(
+def test_slip_is_classified_by_its_last_three_cycles(
     slip: list[list[float]], net: list[list[float]] | None, said: str | None
 ) -> None:
     assert fate_of(of(slip, net)) == said
 
 
-def test_nothing_is_said_of_what_never_slips_or_of_cycles_that_differ() -> None:
+def test_slip_is_not_classified_without_slip_or_with_unequal_cycles() -> None:
     still = of([[0, 0, 0]])
     assert fate_of(still) == "elastic shakedown"
     assert fate_of(of([[0, 0, 0]], before=np.zeros(1))) is None

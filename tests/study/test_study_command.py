@@ -124,7 +124,7 @@ def test_where_the_incremental_solver_wins_the_report_says_by_how_much():
 
 
 @pytest.mark.parametrize("trouble", [KeyboardInterrupt, MemoryError])
-def test_what_was_measured_by_then_stays_when_a_study_is_ended(
+def test_measured_times_are_kept_when_a_study_is_interrupted(
     trouble, tmp_path, monkeypatch, measured
 ):
     def end(*given, **options):
@@ -141,7 +141,7 @@ def test_what_was_measured_by_then_stays_when_a_study_is_ended(
         assert rows(tmp_path / name) == rows(measured[0] / name)
 
 
-def test_a_page_without_who_draws_it_says_so(tmp_path, monkeypatch, capsys, measured):
+def test_a_report_without_a_renderer_says_so(tmp_path, monkeypatch, capsys, measured):
     monkeypatch.setattr(
         report_commands, "error_against_time", lambda *given: measured[1]
     )
@@ -193,7 +193,7 @@ def test_the_present_size_and_its_multiples_are_measured(scene: str) -> None:
     assert len(sizes_table(settings, measured)) == 1 + len(measured)
 
 
-def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
+def test_sizes_that_take_too_long_are_left_out_with_a_note(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     settings = CATALOGUE["strand"].checked({**SMALL_ONES["strand"], "wires": 2})

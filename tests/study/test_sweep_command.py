@@ -162,7 +162,7 @@ def test_a_table_of_something_else_is_not_overwritten(tmp_path: Path) -> None:
     ],
     ids=str,
 )
-def test_what_is_foolish_is_refused_in_a_line(
+def test_bad_arguments_are_refused_in_a_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], more: list[str]
 ) -> None:
     assert command(tmp_path, *more) == 2

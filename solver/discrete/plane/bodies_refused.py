@@ -132,6 +132,11 @@ def check_pairs(
 
     `rotations` are those of all bodies, (n_bodies, 2, 2), `kinds` those of the joints
     (`kinds_of`), `nodes` the positions of all nodes, (n_nodes, 2), m.
+
+    Raises
+    ------
+    RefusedError
+        For the first joint with a wrong pair.
     """
     _check_lengths(joints, pairs)
     _check_directions(bodies, rotations, joints, kinds, pairs)

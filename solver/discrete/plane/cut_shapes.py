@@ -118,7 +118,7 @@ def _bisect(
         return
     places = centres[members]
     longest = int(np.ptp(places, axis=0).argmax())
-    # Rounded, so that elements side by side are told apart by the other direction.
+    # Rounded, so that elements side by side are distinguished by the other direction.
     rounded = np.round(places / np.ptp(places), 9)
     order = np.lexsort((rounded[:, 1 - longest], rounded[:, longest]))
     half = count // 2

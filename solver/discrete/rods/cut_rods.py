@@ -76,7 +76,7 @@ class CutRods:
     Each rod rubs on a support of its own, or on the rods before and behind it; `names`
     are the names of these interfaces, `positions` those of the nodes of each rod,
     (n_nodes,), m, and `rub_at_ends` says whether the first and the last node rub. Each
-    interface stands for a number of `copies`, by default for itself alone.
+    interface represents a number of `copies`, by default for itself alone.
 
     Degrees of freedom run along rod after rod; a broken rod has two at its break, and
     no boundary row there. Rows of one law follow each other: the lower sides of all

@@ -17,11 +17,11 @@ class CutWires:
     Attributes
     ----------
     wire
-        Number in `Rope.wires` of the wire that stands for each, shape (n_cut,).
+        Number in `Rope.wires` of the wire that represents each, shape (n_cut,).
     centres
         Centre of each, sideways and towards the outermost fibre, shape (n_cut, 2), m.
     arc
-        Arc length of the section along the wire that stands for it, (n_cut,), m.
+        Arc length of the section along the wire that represents it, (n_cut,), m.
     side
         -1 where a wire slips the other way, on the other side of the plane of bending,
         else 1; (n_cut,).
@@ -72,7 +72,7 @@ def _cut_wire(
     angles = starts + arc * np.sin(lay) / wire.radius
     if is_clamped:
         return angles, np.full(len(angles), arc), np.ones(len(angles))
-    # Half a turn of the wire stands for both halves: angles are folded onto it.
+    # Half a turn of the wire represents both halves: angles are folded onto it.
     turned = np.sign(lay) * angles
     sides = np.where(np.sin(turned) < 0.0, -1.0, 1.0)
     arcs = np.arccos(np.cos(turned)) / np.pi * wire.length

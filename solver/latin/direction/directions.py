@@ -90,8 +90,8 @@ class Auto(SearchDirection):
     13 % slip take more than 80 iterations to 1 % of the contact force with a large k,
     72 without (measured). So k changes only if nothing slips at all.
 
-    The run then begins anew, from zero. From its fields at that time, which the small k
-    left apart from point to point, 1 % would take 22 to more than 120 iterations, and
+    The run then begins again, from zero. From its fields at that time, which the small
+    k left apart from point to point, 1 % would take 22 to more than 120 iterations, and
     it takes 9 to 15 from zero (measured).
     """
 
@@ -126,7 +126,7 @@ class Auto(SearchDirection):
             return replace(progress, count=count)
         if _slips_between_bodies(iterate):
             return UpdateProgress("returned", progress.k)
-        # The fields of the first k mislead: the run begins anew, from zero.
+        # The fields of the first k mislead: the run begins again, from zero.
         k = read_only(self.scale * automatic(iterate.problem, sticks=True))
         zero = np.zeros_like(iterate.outgoing)
         return UpdateProgress("returned", k, fields=(zero, zero))
@@ -150,7 +150,7 @@ def automatic(
     """Search direction k of every row by the automatic rule.
 
     Where bodies rub, k is that of `solver.laws.stiffness`, in series with the spring of
-    a contact that gives way before it slips; elsewhere it is the paper's k times a
+    a compliant contact; elsewhere it is the paper's k times a
     factor. With the spring left out, 1e-6 of friction force takes 52 iterations of the
     bar instead of 16, and 73 of the strand instead of 15 (measured, geometric means
     over contact stiffnesses of 3 to 3000 and four load paths). Where friction softens,
@@ -236,7 +236,7 @@ def sliding_share(problem: Problem) -> float:
     if len(problem.contacts) > 1 and all(law.is_on_support for law in laws):
         return 1.0
     first = next(iter(problem.contacts.values()))
-    # Interfaces are alike, so the first one stands for all.
+    # Interfaces are alike, so the first one represents all.
     capacity = first.tangential.bound.sum(axis=0)
     smallest = min(2.0 / len(first.positions), 1.0)
     load = np.zeros(problem.n_instants)

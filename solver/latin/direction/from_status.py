@@ -91,7 +91,8 @@ class FromStatus:
         if count < CALM:
             return replace(progress, status=status, count=count)
         fields = _fields(iterate)
-        # W and F do not depend on k, so they are what the run goes on from, or back to.
+        # W and F do not depend on k, so they are what the run continues from, or back
+        # to.
         k = _profile(iterate.problem, status)
         violation = violation_of(iterate.problem, *fields)
         return UpdateProgress("updated", k, fields=fields, violation=violation)
@@ -127,7 +128,7 @@ def _crept(iterate: Iterate) -> NDArray[np.int8]:
     moved = iterate.local_displacement
     force = None
     if any(group.law.tangential.compliance is not None for group in groups):
-        # A point that gives way moves while it sticks: its force tells whether it
+        # A compliant point moves while it sticks: its force tells whether it
         # slips.
         force = iterate.boundary_local_force
     n_points = iterate.problem.contacts.n_points

@@ -36,7 +36,7 @@ class Answer(Iterate):
         F of both stages, shape (n_rows, n_instants), scaled, read-only. Beside a body's
         rigid motion the digits of F/k may be lost.
     is_beside
-        Whether it stands beside the iterates of a search that came to its own end.
+        Whether it is next to the iterates of a search that came to its own end.
         Otherwise it counts as the last iteration.
     """
 
@@ -86,7 +86,7 @@ def certified_answer(
     last
         Last iterate of the run that led to the solution.
     is_beside
-        Whether the answer stands beside the iterates.
+        Whether the answer is next to the iterates.
     """
     scales = problem.scales
     solution = certificate.solution

@@ -30,12 +30,12 @@ OBEYED = 1e-10
 and root of the LATIN indicator up to which the first iterate promises to be one."""
 AGAIN = 2
 """Ratio of the iterations at which a failed status step is tried again, and at which
-two rough numbers are computed anew, as both cost much beside a small iteration: the
+two rough numbers are computed again, as both cost much beside a small iteration: the
 cost of the step, and the force that counts as none."""
 LOOK_BACK = 0.7
 """Share of the iterations at which the contact force is compared with that of now."""
 SAFETY = 8.0
-"""Factor on the error that is left if the changes go on to fall by the slower of their
+"""Factor on the error that is left if changes continue to fall by the slower of their
 last two ratios, which a power of the iterations has as well as a power of a number.
 With 4 one of 880 random runs ended twice as far away as it said, at the beginning
 of a long plateau (measured)."""
@@ -232,7 +232,7 @@ class ForceChanges:
     worst, whole
         Change up to the newest iterate, since that at the share `LOOK_BACK` of the
         iterations: of the kind of force that changes most (friction, pressure, forces
-        of laws of one's own), and of all together; NaN if unknown.
+        of laws of a user), and of all together; NaN if unknown.
     """
 
     def __init__(self) -> None:

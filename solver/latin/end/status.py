@@ -58,7 +58,7 @@ class Decision:
     estimated_error
         Relative error of the contact force; NaN where it was not needed.
     status
-        Ending of the run; None where it goes on.
+        Ending of the run; None where it continues.
     certificate
         The certified solution; None until a status step has found it.
     finished

@@ -66,9 +66,9 @@ class StatusStep:
     Attributes
     ----------
     at_once
-        Whether the run ends as soon as the step holds. Otherwise the method goes on by
-        itself until its own force is within the accuracy, or until it gives up; the
-        certified solution then stands beside the iterates, as the answer.
+        Whether the run ends as soon as the step holds. Otherwise the method continues
+        by itself until its own force is within the accuracy, or until it gives up; the
+        certified solution then is next to the iterates, as the answer.
     """
 
     at_once: bool = True

@@ -205,7 +205,7 @@ class StopState:
             answer = answer_of_iterate(iterate, residual, is_beside=self._searches)
             last = replace(decision, estimated_error=residual)
             return replace(decision, status=None, finished=(answer, last))
-        # A search goes on though its answer is known, until it comes to its own end.
+        # A search continues though its answer is known, until it comes to its own end.
         goes_on = self._searches and status is None
         if certificate is None or not self._may_finish or goes_on:
             return decision
@@ -251,7 +251,7 @@ class StopState:
         return iterate.seconds + self.seconds
 
     def _ending(self, iterate: Iterate) -> tuple[float, Status | None]:
-        """Estimated error, NaN if not needed, and status, None if the run goes on."""
+        """Estimated error, NaN if not needed, and status, None if the run continues."""
         estimate = self.estimate
         is_last = self._is_last(iterate)
         is_due = is_last or iterate.number >= self._next
@@ -295,7 +295,7 @@ class StopState:
         if status is not None:
             return status
         # With the paper's k on many elements a low indicator says little: what is too
-        # far away even by its changes alone goes on.
+        # far away even by its changes alone continues.
         is_far = error > SAFETY * self._stop.accuracy
         sufficient = self._stop.sufficient
         if sufficient > 0.0 and not is_far and self._is_low(iterate, sufficient):

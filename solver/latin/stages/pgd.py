@@ -1,6 +1,6 @@
 """Linear stage on separated bases (paper, section 2.2; MATHEMATICS.md, 3).
 
-With y = W + F/k, every space mode u of y stands for the admissible pair Z = H k u, G =
+With y = W + F/k, every space mode u of y represents the admissible pair Z = H k u, G =
 k (u - Z) (paper, eq. 3), whose G + k Z is k u. So the modes meet the search direction
 as well as they can: the residual of problem 2.3 is k times the part of the new y
 outside the modes.

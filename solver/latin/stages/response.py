@@ -115,7 +115,7 @@ def response_of(elasticity: Elasticity, k: Array) -> Response:
 
 
 def _is_dense(elasticity: Elasticity) -> bool:
-    """Check whether a stiffness is dense, or has so many entries that its factor is."""
+    """Check whether a stiffness is dense, or has as many entries that its factor is."""
     stiffness = elasticity.stiffness
     if isinstance(stiffness, np.ndarray):
         return True

@@ -39,7 +39,7 @@ arch of 61 voussoirs moved by 20 mm has 2 in the first three (measured)."""
 def moves_rigidly(problem: Problem) -> bool:
     """Check whether prescribed motions of a chain of bodies open free hinges.
 
-    A law of contact may do no more than open, slip and give way. Bricks of a wall,
+    A law of contact may do no more than open, slip and be compliant. Bricks of a wall,
     which touch more than two others, seldom find a balance as rigid bodies where
     friction alone holds them, and take minutes to seek it (measured).
     """
@@ -211,8 +211,8 @@ class RigidBodies:
     def _guesses(self, shifts: Array, instant: int) -> list[Array]:
         """Guesses of the shifts of an instant, (n_motions, 1) each.
 
-        Those before it, (n_motions, n_instants), go on as they did: from rest an arch
-        of 31 voussoirs takes a fifth of the time so (measured).
+        Those before it, (n_motions, n_instants), continue as they did: from rest an
+        arch of 31 voussoirs takes a fifth of the time so (measured).
         """
         guesses = []
         if self._is_near:

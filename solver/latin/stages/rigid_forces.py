@@ -165,7 +165,7 @@ class RigidForces:
         """State where the bodies are at a position, (n_motions, n_instants).
 
         `before` are the sliders at the instant before each, (n_pairs, n_instants);
-        without them instants are all, and friction goes on from one to the next.
+        without them instants are all, and friction continues from one to the next.
         """
         size = self._n_pairs
         moved = self._jumps_and_springs(position)

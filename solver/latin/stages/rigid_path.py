@@ -2,7 +2,7 @@
 
 The forces are piecewise linear in positions and loading: while no pair changes its
 status, the bodies that stay in balance move along a line. At a kink one pair opens,
-closes, slips or sticks, and the line goes on in another direction. That may lead back
+closes, slips or sticks, and the line continues in another direction. That may lead back
 to smaller shares of the way, where no larger share has a balance near. A path that is
 followed so ends at the other loading, or goes to infinity (Eaves and Scarf, Math. Oper.
 Res. 1, 1976). Newton's steps may go round in a circle instead, as they do on thick
@@ -93,7 +93,7 @@ class BalancePath:
     def _in_margins(self, overlap: Array, sticking: Array) -> Array:
         """Margins of pressing, and of friction of sticking pairs, (n_pairs, 1).
 
-        The bound of friction goes on below zero where a pair is open, so that all
+        The bound of friction continues below zero where a pair is open, so that all
         margins are linear.
         """
         bound = self._forces.friction * overlap / self._forces.across

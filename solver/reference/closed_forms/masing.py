@@ -1,8 +1,8 @@
 """Masing's rule: response to any load path from that to a growing load.
 
 From a turning point on the answer is the first curve, doubled in both directions. A
-loop that closes is forgotten, and the answer goes on as if it had not been (G. Masing,
-1926, with Madelung's memory).
+loop that closes is forgotten, and the answer continues as if it had not been (G.
+Masing, 1926, with Madelung's memory).
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def masing(load: Array, grown: Callable[[float], float]) -> Array:
 def _closes(value: float, turns: list[tuple[float, float]]) -> bool:
     """Check whether a load has returned to the turn before the last one, or beyond.
 
-    Where that is rest, the first curve goes on at the opposite of the last one.
+    Where that is rest, the first curve continues at the opposite of the last one.
     """
     (before, _), (last, _) = turns[-2:]
     if len(turns) > 2:

@@ -2,7 +2,7 @@
 
 A cycle goes from one turning point of a load to the next but one, so that the first
 loading from rest is not part of a cycle. Slip ceases, dies out, goes to and fro, or
-goes on in one direction (J. R. Barber, Frictional systems subjected to oscillating
+continues in one direction (J. R. Barber, Frictional systems subjected to oscillating
 loads, Ann. Solid Struct. Mech. 2, 2011). The fate is told only where the last three
 cycles agree on it (MATHEMATICS.md, 15).
 """
@@ -88,7 +88,7 @@ class LoadCycles:
         Slip of each point from the beginning to the end of a cycle, same shape, m.
     work
         Friction work of each point in a cycle, times the number of points that it
-        stands for, same shape, J.
+        represents, same shape, J.
     before
         Slip to and fro of each point before the first cycle, shape (n_points,), m.
     is_repeated

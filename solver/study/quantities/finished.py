@@ -180,8 +180,9 @@ def first_largest(values: Array) -> int:
 def largest_load(run: FinishedRun) -> int:
     """Instant of the largest load: of the largest force of the loop.
 
-    While the load is held, the displacement may go on growing, as where friction falls.
-    So of all instants of that force, the first with the largest displacement counts.
+    While the load is held, the displacement may continue growing, as where friction
+    falls. So of all instants of that force, the first with the largest displacement
+    counts.
     """
     force = run.force
     largest = force[first_largest(force)]

@@ -53,7 +53,7 @@ class _Hold:
     def sliding(self, friction: float, instants: Array) -> Array:
         """Pressing forces during sliding, and at its onset, (n,), N.
 
-        Sliding begins between two instants, where the friction, if it goes on growing
+        Sliding begins between two instants, where the friction, if it continues growing
         at its last rate, comes to mu times the pressing force.
 
         Parameters

@@ -218,7 +218,13 @@ def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
 
 
 def axis_of(settings: Settings, text: str) -> Varied:
-    """Varied setting from a text, as of the option `--vary`."""
+    """Varied setting from a text, as of the option `--vary`.
+
+    Raises
+    ------
+    SettingError
+        For a text of another form, an unknown setting, or values that it cannot have.
+    """
     name, equals, values = text.partition("=")
     definitions = settings.definitions()
     if not equals or not values:

@@ -183,7 +183,7 @@ def sweep(
     SettingError
         Where a worker's results would be those of other code.
     BrokenExecutor
-        Where the executor does no more calls; the same sweep can go on in another.
+        Where the executor does no more calls; the same sweep can continue in another.
     """
     warm = warm and not any(reading.reads for reading in plan.readings)
     call = partial(run, plan, limit, warm, uuid.uuid4().hex, versions())

@@ -198,7 +198,7 @@ class Wires:
         """Distance of the nodes of a wire's chain from its tangent, (n_nodes,), m."""
         disc, turn = self._placed[wire]
         x, y = disc.mesh.nodes[self.chain(wire, direction)].T
-        # Middles of edges stand for points of the circle.
+        # Middles of edges represent points of the circle.
         angles = np.arctan2(y, x) - (direction - turn) * TURN
         return np.asarray(self.radius * (1.0 - np.cos(angles)))
 

@@ -112,7 +112,13 @@ class NamedMesh:
 
     @cached_property
     def shapes(self) -> list[Mesh]:
-        """Shape of every body."""
+        """Shape of every body.
+
+        Raises
+        ------
+        RefusedError
+            For a body whose elements make no shape.
+        """
         shapes = []
         for name, used in zip(self.names, self._used, strict=True):
             elements = np.searchsorted(used, self.surfaces[name])

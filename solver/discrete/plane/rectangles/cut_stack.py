@@ -179,7 +179,7 @@ class CutStack:
     ) -> Operator:
         """Operator of a part, from the cache if an earlier structure had an equal part.
 
-        `has_force` tells operators apart.
+        `has_force` distinguishes operators.
         """
         shape = mesh.columns, mesh.rows, *self.rectangles.element
         material = modulus, self.stack.poisson, self.stack.state

@@ -36,8 +36,8 @@ class SideComponent:
         Whether it is a displacement, m; else it is a traction, Pa.
     mean, slope
         Values over time, shape (n_instants,); the slope may be 0. On the left and the
-        right s runs over each body anew. Below strips of ground the mean may be that of
-        each strip, shape (n_strips, n_instants).
+        right s runs over each body again. Below strips of ground the mean may be that
+        of each strip, shape (n_strips, n_instants).
     is_pressure
         Whether drawings name a traction across the side a pressure, which is positive
         into the bodies.

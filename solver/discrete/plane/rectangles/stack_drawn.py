@@ -62,7 +62,7 @@ def _act_on_side(
     else:
         symbol = "τ"
         unit = "Pa"
-    # Arrows along a side stand beside those across it.
+    # Arrows along a side are next to those across it.
     shares = [0.15]
     if is_normal:
         shares = [0.7]

@@ -33,7 +33,7 @@ PRESSED = {
 
 
 @pytest.mark.parametrize("share", [0.001, 0.01, 0.1])
-def test_what_sticks_carries_no_more_than_the_cap_and_is_found_to(share):
+def test_sticking_points_carry_no_more_than_the_cap(share):
     settings = settings_of("layers", **PRESSED, friction_cap=share * 1e7)
     problem = discretise(settings)
     found = reference_of(problem)
@@ -91,7 +91,7 @@ def test_an_iterate_that_obeys_all_laws_is_a_solution_without_a_status_step(fini
 
 
 @pytest.mark.usefixtures("_no_status_step")
-def test_an_iterate_on_its_way_is_none():
+def test_an_early_iterate_is_no_solution():
     run = without_status_step("at-once", 20)
     assert run.status.ending is Ending.EXHAUSTED
     assert not run.is_certified

@@ -130,7 +130,9 @@ def solved(**changes) -> Clips:
         ("random", 9),
     ],
 )
-def test_two_vectors_a_branch_are_the_friction_of_a_bar(load, branches, elements):
+def test_two_vectors_for_each_branch_are_the_friction_of_a_bar(
+    load, branches, elements
+):
     clips = solved(load=load, elements=elements, peak=1200.0)
     assert clips.branches == branches
     assert clips.errors[0] < EXACT
@@ -152,7 +154,7 @@ def test_two_vectors_a_branch_are_the_friction_of_a_bar(load, branches, elements
     ],
     ids=str,
 )
-def test_they_stay_so_with_cuts_uneven_pressure_sliding_and_a_support_that_moves(
+def test_clips_stay_exact_with_cuts_uneven_pressure_sliding_and_a_moving_support(
     changes,
 ):
     assert solved(**changes).errors[0] < EXACT
@@ -168,7 +170,7 @@ def test_they_stay_so_with_cuts_uneven_pressure_sliding_and_a_support_that_moves
     ],
     ids=str,
 )
-def test_where_the_theory_ends_the_error_is_seen_and_modes_of_the_rest_remove_it(
+def test_modes_of_the_residual_remove_the_error_of_clips(
     changes,
 ):
     clips = solved(**changes)
@@ -242,7 +244,7 @@ def test_the_modes_of_a_run_hold_its_friction_and_no_products_need_fewer_numbers
     assert own.within(0.1) >= best.within(0.1)
 
 
-def test_quantities_of_a_run_say_the_same():
+def test_quantities_of_a_run_agree_with_compact_forms():
     run = finished_run(BarSettings.checked({}), errors=False, indicators=False)
     clips = clips_in(run.settings, run.iterate)
     assert reading("clip_numbers@1e-9")(run) == of_clips(clips).numbers[0]

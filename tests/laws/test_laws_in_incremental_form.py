@@ -42,7 +42,7 @@ from solver.reference.solution import fingerprint
 from solver.scenes import CATALOGUE, discretise
 
 
-def test_a_subclass_that_says_its_form_is_certified() -> None:
+def test_a_subclass_with_an_incremental_form_is_certified() -> None:
     solution = solve(as_contact(SameContact), watch=False)
     assert solution.is_certified
     expected = reference_of(bar()).displacement
@@ -120,7 +120,7 @@ UNREAD: dict[str, tuple[Callable[[], Problem], str]] = {
 
 
 @pytest.mark.parametrize("case", UNREAD)
-def test_what_no_incremental_solver_reads_has_neither_reference_nor_certificate(
+def test_laws_without_incremental_form_have_neither_reference_nor_certificate(
     case: str,
 ) -> None:
     make, words = UNREAD[case]
@@ -147,7 +147,7 @@ def test_a_residual_of_fields_is_not_claimed_where_a_law_is_not_read() -> None:
         kkt_residual(solve(of, watch=False).iterate, of)
 
 
-def test_something_may_act_where_a_law_is_not_known() -> None:
+def test_a_structure_with_an_unknown_law_is_not_unloaded() -> None:
     still = bar(force=0.0 * T)
     assert is_unloaded(still)
     load: Any = still.interfaces["load"]
@@ -156,7 +156,7 @@ def test_something_may_act_where_a_law_is_not_known() -> None:
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)
-def test_of_every_scene_incremental_solvers_read_all(scene: str) -> None:
+def test_incremental_solvers_read_all_laws_of_every_scene(scene: str) -> None:
     assert discretise(CATALOGUE[scene].checked(SMALL[scene])).no_reference == ""
 
 

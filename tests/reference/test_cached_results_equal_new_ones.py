@@ -190,7 +190,7 @@ def test_rods_that_differ_in_one_setting_have_the_pieces_of_first_ones(
             assert pieces == pieces_of(settings), settings
 
 
-def test_what_is_kept_cannot_be_changed() -> None:
+def test_cached_results_are_read_only() -> None:
     condensed = Condensation(discretise(small("wall")))
     with pytest.raises(ValueError, match="read-only"):
         condensed.stiffness[0, 0] = 0.0
@@ -207,7 +207,7 @@ class Block:
     nbytes: int
 
 
-def test_the_oldest_goes_where_memory_ends() -> None:
+def test_the_oldest_results_are_dropped_at_the_limit_of_memory() -> None:
     kept = Cache(100)
     first = kept.get("first", lambda: Block(40))
     kept.get("second", lambda: Block(40))
@@ -219,7 +219,7 @@ def test_the_oldest_goes_where_memory_ends() -> None:
     assert kept.get("second", lambda: second) is second
 
 
-def test_what_is_too_large_is_not_kept_and_drops_nothing() -> None:
+def test_too_large_results_are_not_cached_and_drop_nothing() -> None:
     kept = Cache(100)
     small_one = kept.get("small", lambda: Block(60))
     kept.get("large", lambda: Block(101))
@@ -227,7 +227,7 @@ def test_what_is_too_large_is_not_kept_and_drops_nothing() -> None:
     assert kept.get("small", lambda: Block(60)) is small_one
 
 
-def test_what_fails_is_not_kept() -> None:
+def test_failures_are_not_cached() -> None:
     kept = Cache(100)
 
     def fail() -> Block:

@@ -57,7 +57,7 @@ def outcome_of(settings):
 
 
 @pytest.mark.parametrize("command", [one for one in HARD if one not in FINE])
-def test_the_papers_method_ends_right_or_told_on_a_hard_command(command):
+def test_the_papers_method_is_accurate_or_says_so_on_a_hard_path(command):
     settings = from_words(command)
     # Its own tolerance, 1e-10, would hide what the accuracy says, and take long.
     settings = settings.replace(
@@ -74,7 +74,7 @@ def test_a_plateau_is_not_taken_for_the_end():
 
 
 @pytest.mark.parametrize("command", HARD)
-def test_the_fast_method_finds_the_solution_of_a_hard_command(command):
+def test_the_fast_method_finds_the_solution_of_a_hard_path(command):
     outcome = outcome_of(from_words(command))
     assert outcome.ending == Ending.CONVERGED
     assert outcome.certified
@@ -96,7 +96,7 @@ def test_the_fast_method_finds_the_solution_of_a_hard_command(command):
         "instants=1 wires=9 elements=91",
     ],
 )
-def test_a_step_that_needs_more_systems_gets_them_in_time(command):
+def test_a_status_step_gets_more_systems_later_in_a_run(command):
     outcome = outcome_of(from_words(command))
     assert outcome.certified, outcome
     assert outcome.error_force < 1e-9
@@ -135,7 +135,7 @@ def test_an_error_is_that_of_friction_and_of_next_to_nothing_beside_the_pressure
     assert distance.of_friction_force(fields) == pytest.approx(error, rel=1e-2)
 
 
-def test_where_all_slips_a_proven_answer_has_its_displacement_too() -> None:
+def test_a_certified_answer_of_full_slip_has_an_accurate_displacement() -> None:
     """Forces are their bounds at once, and wires were 0.9 % from where they come to."""
     settings = CATALOGUE["strand"].checked(
         {

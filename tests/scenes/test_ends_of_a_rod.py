@@ -59,7 +59,7 @@ def test_a_long_rail_breathes_at_its_ends_and_comes_back_by_half():
     assert moved[-1, -1] == pytest.approx(0.5 * end, rel=1e-3)
 
 
-def test_what_friction_does_not_carry_comes_to_the_other_end():
+def test_force_beyond_friction_reaches_the_other_end():
     """The reaction of a clamp, and of a spring, is the pull less all friction."""
     for left in ({"left_end": "held"}, {"left_end": "spring", "left_spring": 1e5}):
         run = finished_run(bar(peak=2000.0, load="ramp", **left))

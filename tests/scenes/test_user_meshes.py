@@ -152,7 +152,7 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("kind", BROKEN)
-def test_a_broken_mesh_is_refused_with_the_name_of_what_is_wrong(
+def test_a_broken_mesh_is_refused_with_the_name_of_the_fault(
     kind: str, tmp_path: Path
 ) -> None:
     mesh, words = BROKEN[kind]
@@ -165,7 +165,7 @@ def test_a_broken_mesh_is_refused_with_the_name_of_what_is_wrong(
 
 
 @pytest.mark.parametrize("data", [b"", b"no mesh", b"$MeshFormat\n4.1 0 8\n"])
-def test_what_is_no_mesh_is_refused(data: bytes) -> None:
+def test_files_that_are_no_mesh_are_refused(data: bytes) -> None:
     for source in ("a.msh", "a.vtu"):
         with pytest.raises(SettingError, match="save it again") as refused:
             text_of_mesh(data, source)

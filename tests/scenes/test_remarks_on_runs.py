@@ -235,7 +235,7 @@ def test_shifts_of_rigid_bodies_count_where_they_are_made() -> None:
 
 
 @pytest.mark.parametrize("scene", list(LONG_ONES))
-def test_what_takes_minutes_or_gigabytes_is_told(scene: str) -> None:
+def test_long_and_large_runs_are_announced(scene: str) -> None:
     assert cost(scene, **LONG_ONES[scene]).is_large
 
 
@@ -258,7 +258,7 @@ def test_more_of_anything_takes_more(
 
 
 @pytest.mark.parametrize("options", [[], ["--no-reference"]])
-def test_the_command_says_it_in_one_line(
+def test_the_command_announces_a_run_in_one_line(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
     options: list[str],
@@ -271,7 +271,7 @@ def test_the_command_says_it_in_one_line(
     assert line.count("\n") == 1
 
 
-def test_the_command_says_what_no_reference_would_save(
+def test_the_announcement_says_what_no_reference_would_save(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(costs, "LONG", 0.0)

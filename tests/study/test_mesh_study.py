@@ -49,7 +49,7 @@ def test_a_power_of_the_size_is_found_with_what_it_tends_to(
 
 
 @given(values=st.tuples(*3 * [st.floats(-1e6, 1e6)]))
-def test_whatever_three_meshes_give_the_finest_is_inside_the_margin(
+def test_the_finest_value_is_always_inside_the_margin(
     values: tuple[float, float, float],
 ) -> None:
     found = Refinement(values, 1)
@@ -89,7 +89,7 @@ def test_the_energy_of_a_cycle_is_what_the_closed_form_says(
         ("bar elements=10 instants=41 load=cycle", "dissipation@1", "elements"),
     ],
 )
-def test_it_is_said_which_to_refine(
+def test_a_sentence_says_whether_to_refine_elements_or_instants(
     scene: str, asked: str, refined: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     name, *changes = scene.split()
@@ -126,7 +126,7 @@ def test_steps_of_a_narrow_peak_are_said_to_stay() -> None:
     assert undivided(CATALOGUE["bar"].checked({"instants": 11})) == ""
 
 
-def test_of_a_mesh_of_ones_own_instants_alone_are_refined(
+def test_of_a_user_mesh_only_instants_are_refined(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     assert main(["mesh", "mesh", "--of", "dissipation", "--set=instants=5"]) == 0
@@ -137,7 +137,7 @@ def test_of_a_mesh_of_ones_own_instants_alone_are_refined(
 
 
 @pytest.mark.parametrize("asked", ["seconds", "peak_pressure", "nonsense"])
-def test_what_a_mesh_does_not_decide_is_refused(
+def test_quantities_that_do_not_depend_on_the_mesh_are_refused(
     asked: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["mesh", "bar", "--of", asked]) == 2

@@ -37,7 +37,7 @@ def test_rows_of_a_named_construction_are_that_construction(preset: str) -> None
     assert bounds[1] == pytest.approx(bounds[0], rel=1e-9)
 
 
-def test_its_axial_stiffness_is_the_sum_over_its_wires() -> None:
+def test_the_axial_stiffness_of_a_rope_is_the_sum_over_its_wires() -> None:
     expected = sum(
         n * young * np.pi * d**2 / 4.0 * np.cos(np.radians(lay)) ** 3
         for n, d, lay, young in OWN
@@ -47,7 +47,7 @@ def test_its_axial_stiffness_is_the_sum_over_its_wires() -> None:
     )
 
 
-def test_its_first_bending_and_its_cycle_meet_the_closed_form() -> None:
+def test_first_bending_and_cycle_of_a_user_rope_meet_the_closed_form() -> None:
     settings = settings_of(construction=OWN, tension=3e4, load="ramp", curvature=0.2)
     scene, found = solved(settings)
     exact = exact_of(settings).moment(scene.curvature)
@@ -64,7 +64,7 @@ def test_its_first_bending_and_its_cycle_meet_the_closed_form() -> None:
     assert loop == pytest.approx(energy, rel=0.01)
 
 
-def test_latin_certifies_it_near_a_clamp() -> None:
+def test_latin_certifies_a_user_rope_near_a_clamp() -> None:
     clamped = {"bending": "clamp", "elements": 24, "instants": 31, "substructures": 4}
     settings = settings_of(construction=OWN, tension=3e4, **clamped)
     solution = solve(discretise(settings), method_of(settings), watch=False)
@@ -72,7 +72,7 @@ def test_latin_certifies_it_near_a_clamp() -> None:
     assert len(solution.iterate.problem.contacts) == 17
 
 
-def test_it_comes_from_a_file_with_units_in_its_head_and_what_was_understood_is_said(
+def test_a_rope_is_read_from_a_file_with_units_and_a_message(
     tmp_path: Path,
 ) -> None:
     path = tmp_path / "rope.csv"
@@ -117,7 +117,7 @@ def changed(row: int, column: int, value: float) -> list[list[float]]:
         ("spiral", "choose a preset, or give a table"),
     ],
 )
-def test_what_is_no_rope_is_refused_with_its_row(rows: Any, words: str) -> None:
+def test_bad_rows_of_a_rope_are_refused(rows: Any, words: str) -> None:
     text = refusal(lambda: RopeSettings.checked({"construction": rows}))
     assert words in text
     assert "wires" in text

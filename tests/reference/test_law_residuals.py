@@ -317,7 +317,7 @@ def test_a_law_that_is_not_known_here_is_not_passed_over():
         law_residuals(found, foreign)
 
 
-def test_what_is_not_a_number_is_no_small_residual():
+def test_nan_is_no_small_residual():
     problem = problem_of("bar", SMALL["bar"])
     found = reference_of(problem)
     force = found.contact_force.copy()

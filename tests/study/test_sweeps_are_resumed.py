@@ -74,7 +74,7 @@ def test_a_run_that_fails_is_a_row_with_its_reason(
     )
 
 
-def test_what_a_run_had_come_to_is_kept_and_marked() -> None:
+def test_values_of_unconverged_runs_are_stored_and_marked() -> None:
     plan = tiny(
         ["max_iterations=2,1000"], ["iterations", "peak_displacement"], method="paper"
     )
@@ -120,7 +120,7 @@ def test_runs_start_from_their_neighbours_and_come_to_the_same(scene: str) -> No
 
 
 @pytest.mark.parametrize("of", ["iterations", "seconds", "error_force", "indicator@2"])
-def test_what_tells_how_a_run_went_is_taken_of_runs_with_a_start_of_their_own(
+def test_quantities_of_the_course_of_runs_are_of_runs_started_from_zero(
     of: str,
 ) -> None:
     plan = tiny(["friction=0.4:0.42:6"], ["peak_displacement", of])

@@ -79,7 +79,7 @@ def test_pages_share_the_minute_of_playing(
     assert page.state.selection.phase == Selection.phase
 
 
-def test_it_plays_until_somebody_does_something(
+def test_a_scene_plays_until_the_user_acts(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     page = Watched(monkeypatch)
