@@ -34,10 +34,15 @@ def _ends(run: FinishedRun) -> tuple[Array, Array]:
 def _carried(run: FinishedRun) -> Array:
     """Tension that the drum carries, T2 - T1, (n_instants,), N; 0 where it is rounding.
 
-    Ends that are pulled alike leave rounding alone.
+    Tensions are differences of displacements, which ends that are pulled alike share.
     """
     tail, pulled = _ends(run)
-    return without_residue(pulled - tail, np.abs([tail, pulled]))
+    values = run.settings.values()
+    band = run.settings.structure()
+    assert isinstance(band, Band)
+    stretched = np.abs(run.iterate.displacement).max() / band.guide.spacing
+    terms = values["young"] * values["section"] * stretched
+    return without_residue(pulled - tail, terms)
 
 
 def _largest(run: FinishedRun, values: Array, at: float | None) -> float:
