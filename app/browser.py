@@ -18,6 +18,7 @@ from bokeh.models import CustomJS
 from app.messages import Ready
 from app.server import PAGES
 from app.state import PageState
+from app.views.parts import KEEP_SHEETS
 from app.views.scene import NEAR
 from app.views.view import View
 
@@ -380,7 +381,7 @@ class Browser(DataModel):
             ["given", "is_stale", "is_new"],
         )
         document.add_root(self)
-        for script in (ACTS, LISTEN, TELL, HOLD, CHOOSE, RETURN):
+        for script in (KEEP_SHEETS, ACTS, LISTEN, TELL, HOLD, CHOOSE, RETURN):
             document.js_on_event(DocumentReady, CustomJS(args=args, code=script))
 
 

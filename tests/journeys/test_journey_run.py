@@ -69,8 +69,16 @@ REST = """() => {
   window.stopped = () => { clearInterval(timer); return count }
 }"""
 """Script that moves a pointer in the middle of each plot, until it is stopped."""
-
-
+SHEETS = """() => {
+  const element = document.head.appendChild(document.createElement("style"))
+  const sheets = ["p {}", "p {}", "b {}"].map((text) => {
+    element.textContent = text
+    return element.sheet
+  })
+  element.remove()
+  return [sheets[1] === sheets[0], sheets[2].cssRules[0].selectorText]
+}"""
+"""Whether a style sheet stays as the same text is set, and what is there of another."""
 MEANING = "(term) => getComputedStyle(term, '::after').content"
 MET = "localStorage.getItem('slipfront')"
 
@@ -154,6 +162,12 @@ def has_plots_beside(page: Page) -> bool:
     """Check whether plots stand beside the picture, and not below it."""
     scene, plot = (figure(page, number).bounding_box() for number in (0, 2))
     return bool(scene and plot and scene["x"] + scene["width"] <= plot["x"])
+
+
+def test_a_style_sheet_is_read_anew_where_its_text_is_another_alone(
+    page: Page,
+) -> None:
+    assert page.evaluate(SHEETS) == [True, "b"]
 
 
 def test_a_pointer_that_rests_on_a_plot_may_be_there_before_it_is_painted(
