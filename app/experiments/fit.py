@@ -95,7 +95,7 @@ class FitTab(CommandTab):
         self._draw()
 
     def said(self, progress: str) -> str:
-        """Progress with titles of the settings, which the command calls by their keys."""
+        """Progress with titles of settings, which the command calls by their keys."""
         definitions = self.state.settings.definitions()
         for name in self.chosen.value:
             progress = re.sub(rf"\b{name}\b", title_of(definitions[name]), progress)
