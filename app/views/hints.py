@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ PADDING = 10.0
 """Width of a mark beside its text, px."""
 BROAD = 420.0
 """Length of bodies from which two marks have room beside each other, px."""
+NARROW = 13
+"""Number of letters for which a mark under an arrow has room beside bodies."""
 RUBBING = 0.55
 """Place of the mark of friction, over the length."""
 NONE: Columns = {"x": [], "y": [], "text": [], "text_align": []}
@@ -41,12 +44,13 @@ def hints_of(picture: Picture) -> Columns:
             anchors.append(np.array([x - ASIDE, 0.5 * top]))
             aligns.append("right")
         else:
-            text = f"↖ {acts}"
-            texts.append(text)
-            # It ends within the picture.
+            # A long one has two lines, so that it ends within the picture.
+            lines = textwrap.wrap(f"↖ {acts}", NARROW)
+            texts.append("\n".join(lines))
             right = layout.width - layout.origin[0]
-            begin = right - layout.letter * len(text) - PADDING
-            anchors.append(np.array([min(x + ASIDE, begin), 0.5 * top - UNDER]))
+            begin = right - layout.letter * max(map(len, lines)) - PADDING
+            under = UNDER + 0.5 * (len(lines) - 1) * layout.row
+            anchors.append(np.array([min(x + ASIDE, begin), 0.5 * top - under]))
             aligns.append("left")
     texts.append(RUBS)
     aligns.append("center")

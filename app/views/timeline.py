@@ -132,7 +132,7 @@ def given_in(description: Description) -> list[tuple[str, Array, Unit]]:
     """
     given: list[tuple[str, Array, Unit]] = []
     if description.tilt is not None:
-        given.append(("tilt", np.degrees(description.tilt), Unit("°")))
+        given.append(("slope", np.degrees(description.tilt), Unit("°")))
     for index, act in enumerate(description.acts):
         before = description.acts[:index]
         if any(is_opposite(act, other) or is_equal(act, other) for other in before):

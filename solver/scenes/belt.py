@@ -144,7 +144,7 @@ class BeltSettings(PlaneSettings):
         (0.0, 5000.0),
         "Largest force at the pulled end, beyond that of the tail. Over a drum it is "
         "what the drum carries.",
-        title="Pull beyond the tail's",
+        title="Pull above the tail force",
         unit="N",
         applies=lambda settings: settings.driven != "moved",
         path="pull_load",

@@ -63,7 +63,7 @@ def test_why_a_run_has_no_answer_is_told_in_the_words_of_the_page() -> None:
     made.sweep.thread.join()
     made.look()
     assert "1 refused" in made.message.object
-    refused = "The first refused: Pull beyond the tail's cannot be 2 kN: lower it"
+    refused = "The first refused: Pull above the tail force cannot be 2 kN: lower it"
     assert refused in made.message.object
     assert "Allowed: tensions of both ends" in made.message.object
 
