@@ -156,7 +156,7 @@ def test_paths_from_instant_to_instant_lead_to_balance_without_newtons_steps(
         ends.append(end)
         return end
 
-    monkeypatch.setattr(rigid_balance.Balance, "settled", followed)
+    monkeypatch.setattr(rigid_balance.Balance, "solve_instant", followed)
     assert errors(arch(instants=13), 25)[-1] <= 0.01
     assert len(ends) > 10
 
@@ -169,7 +169,7 @@ def test_bodies_that_move_far_are_in_balance_up_to_rounding(monkeypatch):
     def never(*_):
         raise AssertionError("Rounding was taken for want of balance.")
 
-    monkeypatch.setattr(rigid_balance.Balance, "_followed", never)
+    monkeypatch.setattr(rigid_balance.Balance, "_follow_path", never)
     field = np.zeros((problem.n_rows, problem.n_instants), order="F")
     assert np.abs(shifts.balanced(field)).max() > 0.0
 
