@@ -144,14 +144,14 @@ def test_thick_rings_of_a_quarter_circle_are_in_balance_after_each_local_stage(c
 def test_paths_from_instant_to_instant_lead_to_balance_without_newtons_steps(
     monkeypatch,
 ):
-    settled = rigid_balance.Balance.settled
+    settled = rigid_balance.Balance.solve_instant
     ends = []
 
     def followed(self, loading, sliders, guesses, before, last):
         is_pressed = last is not None and last[0].load.any()
         if not is_pressed:
             return settled(self, loading, sliders, guesses, before, last)
-        end = self._followed(last, loading, sliders)
+        end = self._follow_path(last, loading, sliders)
         assert end.error <= self.enough
         ends.append(end)
         return end
