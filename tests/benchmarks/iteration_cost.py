@@ -175,7 +175,7 @@ class Overhead:
 class _Unproven(ErrorEstimate):
     """Errors that are estimated without a status step."""
 
-    def can_be_proven(self, iterate: Iterate) -> bool:
+    def is_step_worthwhile(self, iterate: Iterate) -> bool:
         return False
 
 

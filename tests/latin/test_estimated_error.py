@@ -285,7 +285,7 @@ def test_a_run_is_judged_at_iterations_that_grow_by_a_sixteenth_and_at_its_last(
         return math.nan
 
     monkeypatch.setattr(ErrorEstimate, "__call__", unknown)
-    monkeypatch.setattr(ErrorEstimate, "can_be_proven", lambda *_: False)
+    monkeypatch.setattr(ErrorEstimate, "is_step_worthwhile", lambda *_: False)
     last = 75
     solved(small("bar", finish="none", accuracy=1e-6, max_iterations=last))
     assert judged_at[:16] == list(range(1, 17))

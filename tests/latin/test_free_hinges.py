@@ -144,19 +144,19 @@ def test_thick_rings_of_a_quarter_circle_are_in_balance_after_each_local_stage(c
 def test_paths_from_instant_to_instant_lead_to_balance_without_newtons_steps(
     monkeypatch,
 ):
-    settled = rigid_balance.Balance.settled
+    settled = rigid_balance.Balance.solve_instant
     ends = []
 
     def followed(self, loading, sliders, guesses, before, last):
         is_pressed = last is not None and last[0].load.any()
         if not is_pressed:
             return settled(self, loading, sliders, guesses, before, last)
-        end = self._followed(last, loading, sliders)
+        end = self._follow_path(last, loading, sliders)
         assert end.error <= self.enough
         ends.append(end)
         return end
 
-    monkeypatch.setattr(rigid_balance.Balance, "settled", followed)
+    monkeypatch.setattr(rigid_balance.Balance, "solve_instant", followed)
     assert errors(arch(instants=13), 25)[-1] <= 0.01
     assert len(ends) > 10
 
@@ -169,7 +169,7 @@ def test_bodies_that_move_far_are_in_balance_up_to_rounding(monkeypatch):
     def never(*_):
         raise AssertionError("Rounding was taken for want of balance.")
 
-    monkeypatch.setattr(rigid_balance.Balance, "_followed", never)
+    monkeypatch.setattr(rigid_balance.Balance, "_follow_path", never)
     field = np.zeros((problem.n_rows, problem.n_instants), order="F")
     assert np.abs(shifts.balanced(field)).max() > 0.0
 

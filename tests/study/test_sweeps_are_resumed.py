@@ -40,7 +40,7 @@ def test_every_point_has_one_row_whose_values_are_those_of_its_run() -> None:
     assert [row.number for row in rows] == list(range(6))
     assert all(row.holds and not row.reason for row in rows)
     alone = finished_run(plan.settings_at(3), errors=False, indicators=False)
-    assert rows[3].values == tuple(reading(alone) for reading in plan.readings)
+    assert rows[3].values == tuple(reading(alone) for reading in plan.quantities)
     assert not any(row.was_warm for row in rows)
     assert rows[3].values[1] == rows[3].iterations
 

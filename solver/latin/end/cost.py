@@ -276,7 +276,7 @@ def run_cost(
         iterations *= PLAIN
     iterations = min(iterations, max_iterations)
     is_worth_it = latin.finish is not None and costs.afford(iterations)
-    # Bases need the proof of a status step whatever it costs.
+    # Bases need the certificate of a status step, at any cost.
     takes_step = has_solver and (isinstance(latin.linear, PGD) or is_worth_it)
     seconds = WATCHED * iterations * costs.whole_iteration
     if takes_step:

@@ -57,7 +57,7 @@ class ErrorEstimate:
     ----------
     accuracy
         Relative error that the run asks for; infinite where it asks for none.
-    needs_proof
+    needs_certificate
         Whether only a certified solution counts, whatever it costs: bases that are too
         small converge to something else, which no change shows, and from a start that
         is near changes are small also where k is so far off that nothing moves.
@@ -84,12 +84,12 @@ class ErrorEstimate:
         self,
         accuracy: float,
         *,
-        needs_proof: bool = False,
+        needs_certificate: bool = False,
         may_shift: bool = False,
         interrupted: Callable[[], bool] = lambda: False,
     ) -> None:
         self._accuracy = accuracy
-        self.needs_proof = needs_proof
+        self.needs_certificate = needs_certificate
         self._may_shift = may_shift
         self._changes = ForceChanges()
         self._next_trial = 1
@@ -125,11 +125,11 @@ class ErrorEstimate:
         return self._costs_of(iterate).is_small(number)
 
     @property
-    def is_proven(self) -> bool:
+    def is_certified(self) -> bool:
         """Check whether the error is the distance to a certified solution."""
         return self.certificate is not None
 
-    def is_proven_within(self, share: float, iterate: Iterate) -> bool:
+    def is_within_certified(self, share: float, iterate: Iterate) -> bool:
         """Check whether an iterate is within a share of a certified solution.
 
         `share` is the largest relative error of its displacement and contact force.
@@ -141,18 +141,18 @@ class ErrorEstimate:
         of_displacement = distance.of_displacement(iterate)
         return max(of_force, of_displacement) <= share
 
-    def can_be_proven(self, iterate: Iterate) -> bool:
+    def is_step_worthwhile(self, iterate: Iterate) -> bool:
         """Check whether a status step is worth its cost at this iterate."""
         if iterate.problem.no_reference or not self._has_solver:
             return False
         costs = self._costs_of(iterate)
         if costs.step > self._time_left():
             return False
-        return self.needs_proof or costs.afford(iterate.number)
+        return self.needs_certificate or costs.afford(iterate.number)
 
     def try_step(self, iterate: Iterate) -> None:
-        """Try the status step, if `can_be_proven` says that it is worth its cost."""
-        if not self.can_be_proven(iterate):
+        """Try the status step, if it is worth its cost by `is_step_worthwhile`."""
+        if not self.is_step_worthwhile(iterate):
             return
         self._next_trial = AGAIN * iterate.number + 1
         try:

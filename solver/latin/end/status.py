@@ -14,7 +14,7 @@ from solver.reference.limit_analysis import Collapse, Motion
 
 AT_LIMIT = "The run has come to its limit"
 INACCURATE = "The contact force of the iterates is not accurate enough"
-UNPROVEN = "The contact force is not known to be accurate enough"
+UNCERTIFIED = "The contact force is not known to be accurate enough"
 ABOVE = "The LATIN indicator is still above its tolerance"
 """Reasons why a run ends at its limit without convergence."""
 FAR = 0.1
@@ -76,7 +76,7 @@ class Decision:
 CANCELLED = Status(
     Ending.CANCELLED, "The run was stopped before its end; start it again."
 )
-PROVEN = Status(
+CERTIFIED = Status(
     Ending.CONVERGED,
     "Accurate enough: the contact force of this iterate is within the accuracy of the "
     "exact solution on this mesh, which a status step has found. What is shown is the "
@@ -87,7 +87,7 @@ EXPECTED = Status(
     "Accurate enough by estimate: the contact force hardly changes any more. Proof by "
     "a status step would take as long again, or longer.",
 )
-UNPROVABLE = Status(
+NO_CERTIFICATE = Status(
     Ending.CONVERGED,
     "Accurate enough by estimate: the contact force hardly changes any more. Nothing "
     "can prove it.",
@@ -222,7 +222,7 @@ def certified(
     Parameters
     ----------
     answer, certificate
-        The certified solution, and its proof.
+        The certified solution, with its residual.
     error
         Relative error of the contact force of the last iterate before; NaN where the
         states of another run led to the solution.
@@ -253,7 +253,7 @@ def _error_of_search(answer: Answer, error: float) -> str:
     return _FOUND.format(before, shown)
 
 
-def unprovable(status: Status, problem: Problem, *, has_bases: bool) -> Status:
+def without_certificate(status: Status, problem: Problem, *, has_bases: bool) -> Status:
     """Add to a status why no certificate is possible, if the problem has no reference.
 
     `has_bases` says that the linear stage is on separated bases.
@@ -349,8 +349,9 @@ def stalled(remedies: Remedies, relaxation: float, *, is_low: bool) -> Status:
         if not remedy:
             remedy = f"{remedies.of_k.capitalize()}."
         advice = (
-            f"{UNPROVEN}, though the LATIN indicator is low: k is far from what suits, "
-            f"or rigid motion so large that it hides how the body deforms. {remedy}"
+            f"{UNCERTIFIED}, though the LATIN indicator is low: k is far from what "
+            "suits, or rigid motion so large that it hides how the body deforms. "
+            f"{remedy}"
         )
         return Status(Ending.STALLED, advice)
     if relaxation > RELAXED:

@@ -22,11 +22,11 @@ from solver.latin.end.status import (
     ABOVE,
     AT_LIMIT,
     BELOW,
+    CERTIFIED,
     EXPECTED,
     INACCURATE,
-    PROVEN,
-    UNPROVABLE,
-    UNPROVEN,
+    NO_CERTIFICATE,
+    UNCERTIFIED,
     Decision,
     Ending,
     Status,
@@ -37,8 +37,8 @@ from solver.latin.end.status import (
     obeyed,
     remedies_of,
     stalled,
-    unprovable,
     with_jump,
+    without_certificate,
 )
 from solver.latin.end.status_step import Certificate, StatusStep
 from solver.latin.iterate import Iterate
@@ -56,8 +56,8 @@ LATE = 100
 """Iterations before which no run is called stalled."""
 AGREED = 0.25
 """Largest k-free indicator, over the accuracy, at which an estimate ends a run without
-a proof: changes are small, too, where k is so far off that nothing moves. One of 1500
-random runs, a wall of slender bricks, then was 2.3 times as far away as its accuracy,
+a certificate. Changes are small, too, where k is so far off that nothing moves: one of
+1500 random runs, a wall of slender bricks, was 2.3 times as far away as its accuracy,
 at an indicator of 0.6 of it (measured)."""
 
 
@@ -72,7 +72,7 @@ class Stop:
     ----------
     accuracy
         Largest relative error of the contact force, by estimate; where a status step is
-        worth its cost, the exact solution has to prove it.
+        worth its cost, a certified solution has to confirm it.
     tolerance
         LATIN indicator eta, a ratio of squares, that is low enough if the k-free
         indicator agrees.
@@ -176,7 +176,7 @@ class StopState:
         )
         self.estimate = ErrorEstimate(
             self._stop.accuracy,
-            needs_proof=self._has_bases or latin.start is not None,
+            needs_certificate=self._has_bases or latin.start is not None,
             may_shift=latin.multiscale and not self._has_bases,
             interrupted=interrupted,
         )
@@ -241,7 +241,7 @@ class StopState:
         """
         problem = iterate.problem
         has_rules = not (problem.no_reference or problem.has_start)
-        if _is_failure(status) and has_rules and not self.estimate.is_proven:
+        if _is_failure(status) and has_rules and not self.estimate.is_certified:
             return kkt_residual(iterate, problem, HIDDEN)
         return math.nan
 
@@ -258,18 +258,18 @@ class StopState:
         # The iterations of a search are counted, so its error is needed at each of
         # them; a distance costs a hundredth to a sixth of one (measured on the five
         # scenes).
-        counts = self._searches and estimate.is_proven
+        counts = self._searches and estimate.is_certified
         error = math.nan
         if self._asks_accuracy and (is_due or counts):
             error = estimate(iterate)
         status = None
-        if self._searches and estimate.is_proven and error <= self._stop.accuracy:
-            status = PROVEN
+        if self._searches and estimate.is_certified and error <= self._stop.accuracy:
+            status = CERTIFIED
         elif is_due:
             self._next = iterate.number + 1 + iterate.number // SHARE
             status = self._reached(iterate, error)
         gives_up = _is_failure(status) or (status is None and is_last)
-        if gives_up and self._may_finish and not estimate.is_proven:
+        if gives_up and self._may_finish and not estimate.is_certified:
             # Without a certified solution the run would have no answer.
             estimate.try_step(iterate)
         if estimate.ending is not None:
@@ -281,7 +281,7 @@ class StopState:
             if _is_failure(status) and estimate.unsolved_from is not None:
                 status = not_found(status, problem, estimate.unsolved_from)
             status = with_jump(status, problem, estimate.certificate)
-            status = unprovable(status, problem, has_bases=self._has_bases)
+            status = without_certificate(status, problem, has_bases=self._has_bases)
         return error, status
 
     def _is_last(self, iterate: Iterate) -> bool:
@@ -321,20 +321,20 @@ class StopState:
     def _status_of_accurate(self, iterate: Iterate) -> Status | None:
         """Status of a run that is accurate enough; None if a certificate is needed."""
         estimate = self.estimate
-        if estimate.is_proven:
+        if estimate.is_certified:
             # Without a search the iterate is the answer, and its displacement, too, has
             # to be near: where all slips, forces are right long before.
             accuracy = self._stop.accuracy
-            if self._searches or estimate.is_proven_within(accuracy, iterate):
-                return PROVEN
+            if self._searches or estimate.is_within_certified(accuracy, iterate):
+                return CERTIFIED
             return None
         # An estimate counts for nothing on bases, or where a step is worth its cost.
-        if estimate.needs_proof or estimate.can_be_proven(iterate):
+        if estimate.needs_certificate or estimate.is_step_worthwhile(iterate):
             return None
         if iterate.violation > AGREED * self._stop.accuracy:
             return None
         if iterate.problem.no_reference:
-            return UNPROVABLE
+            return NO_CERTIFICATE
         return EXPECTED
 
     def _is_low(self, iterate: Iterate, tolerance: float) -> bool:
@@ -351,18 +351,18 @@ class StopState:
         enough = min(math.sqrt(tolerance), LARGEST_VIOLATION)
         if iterate.violation <= enough:
             return True
-        return self.estimate.is_proven_within(enough, iterate)
+        return self.estimate.is_within_certified(enough, iterate)
 
     def _exhausted(self, iterate: Iterate) -> Status:
         """Status of a run at its limit, with the criterion that is not met."""
-        is_proven = self.estimate.is_proven
+        is_certified = self.estimate.is_certified
         lack = AT_LIMIT
-        if self._asks_accuracy and self._searches and is_proven:
+        if self._asks_accuracy and self._searches and is_certified:
             lack = INACCURATE
         elif iterate.indicator > self._stop.tolerance and not self._searches:
             lack = ABOVE
         elif self._asks_accuracy:
-            lack = UNPROVEN
+            lack = UNCERTIFIED
         may_go_on = iterate.number < self._stop.iterations
         return exhausted(lack, self._remedies, may_go_on=may_go_on)
 

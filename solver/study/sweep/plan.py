@@ -96,7 +96,7 @@ class Plan:
     of: tuple[str, ...]
 
     @property
-    def readings(self) -> tuple[Quantity, ...]:
+    def quantities(self) -> tuple[Quantity, ...]:
         """Quantities of every run."""
         return tuple(reading(name) for name in self.of)
 
@@ -155,13 +155,13 @@ class Row:
     reason
         Reason of that ending, and what to try.
     values
-        Values of the readings of the plan, in their units: NaN where the run has none,
+        Values of the quantities, in the order of the plan: NaN where the run has none,
         infinity for never. Those of a run that has not converged are of its last
         iterate, and NaN where some of its instants have no solution.
     iterations
         Number of iterations.
     seconds
-        Time of the run with its problem, its reference and its readings, s.
+        Time of the run with its problem, its reference and its quantities, s.
     was_warm
         Whether the run started from the run nearest to it.
     """

@@ -79,7 +79,7 @@ def _scale(
         # Nothing that is zero or less stands on a logarithmic axis.
         wide = logarithmic and bool((known > 0.0).any())
     _, unit = _measure(plan, index)
-    return PanelAxis(plan.readings[index].title, unit, wide)
+    return PanelAxis(plan.quantities[index].title, unit, wide)
 
 
 def _axis(varied: Varied) -> PanelAxis:
@@ -98,7 +98,7 @@ def _map(
     if scale.logarithmic:
         z = np.where(z > 0.0, z, np.nan)
     return Map(
-        title=plan.readings[index].title,
+        title=plan.quantities[index].title,
         x=_axis(across),
         y=_axis(up),
         x_values=across.places,
@@ -128,7 +128,7 @@ def _panel(plan: Plan, index: int, runs: Runs, logarithmic: bool | None) -> Pane
     x_axis = _axis(across)
     y_axis = _scale(plan, index, runs.y, logarithmic)
     return Panel(
-        plan.readings[index].title,
+        plan.quantities[index].title,
         replace(x_axis, limits=_limits(across.places, x_axis)),
         replace(y_axis, limits=_limits(runs.y, y_axis)),
         tuple(curves),
@@ -240,7 +240,7 @@ def _texts(axis: Varied) -> list[str]:
 
 def _measure(plan: Plan, index: int) -> tuple[float, str]:
     """Factor and unit of a quantity: shares are in per cent."""
-    quantity = plan.readings[index]
+    quantity = plan.quantities[index]
     if quantity.is_share:
         return (100.0, "%")
     return (1.0, quantity.unit)
@@ -284,7 +284,7 @@ def _power(sizes: Array, values: Array) -> float:
 
 def title_of(plan: Plan) -> str:
     """Title of a sweep: its quantities over its settings."""
-    asked = ", ".join(_uncapitalised(quantity.title) for quantity in plan.readings)
+    asked = ", ".join(_uncapitalised(quantity.title) for quantity in plan.quantities)
     over = " and ".join(_uncapitalised(axis.title) for axis in plan.axes)
     return f"{plan.settings.scene.capitalize()}: {asked} over {over}"
 
@@ -355,7 +355,7 @@ def head(plan: Plan) -> list[str]:
     for axis in plan.axes:
         values = ", ".join(map(str, axis.values))
         columns.append(f"{_column(axis)}: {values}")
-    for quantity in plan.readings:
+    for quantity in plan.quantities:
         columns.append(_column(quantity))
     varied = {axis.name for axis in plan.axes}
     lines = dump(plan.settings).splitlines()

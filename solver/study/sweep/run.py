@@ -77,7 +77,7 @@ def run(
     """
     if asked_by != versions():
         raise SettingError(WORKER, versions(), asked_by, "install these on all workers")
-    if any(reading.reads for reading in plan.readings):
+    if any(reading.reads for reading in plan.quantities):
         warm_up()
     began = time.perf_counter()
     nothing = (math.nan,) * len(plan.of)
@@ -95,7 +95,7 @@ def run(
 
 def _row_of(plan: Plan, number: int, finished: FinishedRun) -> Row:
     """Row of a finished run, without its time."""
-    values = tuple(reading(finished) for reading in plan.readings)
+    values = tuple(reading(finished) for reading in plan.quantities)
     status = finished.solution.status
     ending = str(status.ending)
     reason = status.advice
@@ -127,7 +127,7 @@ def _from_nearest(
     before = None
     if kept:
         _, before = min(list(kept), key=lambda other: math.dist(point, other[0]))
-    reads = {reading.reads for reading in plan.readings}
+    reads = {reading.reads for reading in plan.quantities}
     finished = finished_run(
         plan.settings_at(number),
         errors="errors" in reads,
@@ -185,7 +185,7 @@ def sweep(
     BrokenExecutor
         Where the executor does no more calls; the same sweep can continue in another.
     """
-    warm = warm and not any(reading.reads for reading in plan.readings)
+    warm = warm and not any(reading.reads for reading in plan.quantities)
     call = partial(run, plan, limit, warm, uuid.uuid4().hex, versions())
     path = (number for number in snake(plan.shape) if number not in done)
     under_way: dict[Future[Row], int] = {}
