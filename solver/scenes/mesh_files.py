@@ -230,7 +230,7 @@ def _sets_by_size(mesh: Any) -> dict[str, list[Indices]]:
     all: meshio has a colon in these.
     """
     sets = dict[str, list[Indices]]()
-    every_set = {**mesh.cell_sets, **_groups(mesh, "cell_tags", mesh.cell_data)}
+    every_set = dict(mesh.cell_sets) | _groups(mesh, "cell_tags", mesh.cell_data)
     for title, cells in every_set.items():
         name = title.partition(NUMBER)[0]
         if not name or ":" in name:
@@ -263,9 +263,12 @@ def _groups(mesh: Any, families: str, data: Mapping[str, Any]) -> dict[str, Any]
         return {}
     if families == "point_tags":
         numbers = [numbers]
+    families_of = dict[str, list[int]]()
+    for family, names in groups_of.items():
+        for name in names:
+            families_of.setdefault(name, []).append(family)
     found = dict[str, Any]()
-    for name in sorted({name for names in groups_of.values() for name in names}):
-        own = [family for family, names in groups_of.items() if name in names]
+    for name, own in families_of.items():
         found[name] = [np.flatnonzero(np.isin(each, own)) for each in numbers]
     return found
 
