@@ -20,6 +20,7 @@ from solver.commands.console import (
     add_command,
     announce,
     given,
+    names_in,
     print_json,
     refusing,
     warn,
@@ -167,15 +168,18 @@ def _add_run(commands: Any) -> None:
         "load has many",
     )
     run.add_argument(
-        "--of", default="", metavar="NAME,...", help="print quantities of the run, too"
+        "--of",
+        action="append",
+        default=[],
+        metavar="NAME,...",
+        help="print quantities of the run, too",
     )
 
 
 def _run(chosen: argparse.Namespace) -> int:
     """Run a scene to its stop rule; print its key figures, and write its result."""
     limit = _limit(chosen)
-    names = [name.strip() for name in chosen.of.split(",")]
-    asked = [reading(name) for name in names if name]
+    asked = [reading(name) for name in names_in(chosen.of) if name]
     if chosen.out is not None:
         with refusing(chosen.out, CAN_BE_WRITTEN):  # before the run, not after it
             check_place(chosen.out)

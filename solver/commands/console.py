@@ -9,7 +9,7 @@ import math
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -62,6 +62,11 @@ def given(chosen: argparse.Namespace) -> tuple[Settings, Mapping[str, str]]:
     print_tables(tables)
     warn(*remarks_before(settings, chosen.changes))
     return settings, tables
+
+
+def names_in(options: Sequence[str]) -> list[str]:
+    """Names between commas in an option, which may be given several times."""
+    return [name.strip() for name in ",".join(options).split(",")]
 
 
 def read_brought(chosen: argparse.Namespace, allowed: str) -> Table:

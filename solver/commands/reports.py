@@ -13,6 +13,7 @@ from solver.commands.console import (
     INTERRUPTED,
     add_command,
     given,
+    names_in,
     postponed_interrupt,
     print_files,
     print_tables,
@@ -105,7 +106,11 @@ def _add_sweep(commands: Any) -> None:
         "--vary", action="append", default=[], metavar="RANGE", help=FORM
     )
     parser.add_argument(
-        "--of", required=True, metavar="NAME,...", help="what is asked of a run"
+        "--of",
+        action="append",
+        required=True,
+        metavar="NAME,...",
+        help="what is asked of a run",
     )
     parser.add_argument("--on", default="processes", metavar="EXECUTOR", help=FORMS)
     parser.add_argument(
@@ -200,7 +205,7 @@ def _sweep(chosen: argparse.Namespace) -> int:
     settings, tables = settings_from_command(chosen.scene, chosen.changes)
     # Without a range the sweep is a single run, in one row.
     vary = chosen.vary or [f"friction={settings.friction!r}"]
-    plan = plan_of(settings, vary, [name.strip() for name in chosen.of.split(",")])
+    plan = plan_of(settings, vary, names_in(chosen.of))
     if not chosen.limit > 0.0:
         raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
     print_tables(tables)

@@ -14,6 +14,7 @@ from solver.commands.console import (
     add_command,
     announce,
     given,
+    names_in,
     print_files,
     print_json,
     print_tables,
@@ -69,7 +70,9 @@ def add_checks(commands: Any) -> None:
     purpose = "settings that bring a run nearest to a measured loop"
     fitting = add_command(commands, "fit", purpose, _fit, of_scene=True, to_folder=True)
     count = f"up to {MOST} settings"
-    fitting.add_argument("--vary", required=True, metavar="NAME,...", help=count)
+    fitting.add_argument(
+        "--vary", action="append", required=True, metavar="NAME,...", help=count
+    )
     for parser in (compare, fitting):
         parser.add_argument(
             "--with",
@@ -215,7 +218,7 @@ def _fit(chosen: argparse.Namespace) -> int:
     measured = loop_in(read_brought(chosen, LOOP), settings.structure().axes)
     announce(settings, discretise(settings))
     print_tables({measured.source: measured.message})
-    names = [name.strip() for name in chosen.vary.split(",")]
+    names = names_in(chosen.vary)
     printed = 0.0
 
     def watch(runs: int, nearest: ComparedRun) -> None:

@@ -13,7 +13,6 @@ import io
 import struct
 import zipfile
 from collections.abc import Iterator, Mapping
-from itertools import chain
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import Any
@@ -236,7 +235,7 @@ def _sets_by_size(mesh: Any) -> dict[str, list[Indices]]:
     at all: meshio has a colon in these.
     """
     sets = dict[str, list[Indices]]()
-    every_set = mesh.cell_sets | _groups(mesh, "cell_tags", mesh.cell_data)
+    every_set = dict(mesh.cell_sets) | _groups(mesh, "cell_tags", mesh.cell_data)
     for title, cells in every_set.items():
         name = title.partition(NUMBER)[0]
         if not name or ":" in name:
@@ -269,9 +268,12 @@ def _groups(mesh: Any, families: str, data: Mapping[str, Any]) -> dict[str, Any]
         return {}
     if families == "point_tags":
         numbers = [numbers]
+    families_of = dict[str, list[int]]()
+    for family, names in groups_of.items():
+        for name in names:
+            families_of.setdefault(name, []).append(family)
     found = dict[str, Any]()
-    for name in sorted(set(chain.from_iterable(groups_of.values()))):
-        own = [family for family, names in groups_of.items() if name in names]
+    for name, own in families_of.items():
         found[name] = [np.flatnonzero(np.isin(each, own)) for each in numbers]
     return found
 

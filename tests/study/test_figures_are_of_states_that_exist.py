@@ -174,6 +174,13 @@ def test_displacement_and_force_are_told_where_the_loop_has_them(
     assert not {"displacement", "force"} & strand.keys()
 
 
+def test_what_is_asked_twice_is_told_twice(capsys: pytest.CaptureFixture[str]) -> None:
+    """Of options that were given again the last one alone counted."""
+    asked = ("--of", "peak_slip,force", "--of", "stiffness")
+    found = printed(capsys, "bar", "--no-reference", *asked, elements=10, instants=11)
+    assert list(found["quantities"]) == ["peak_slip", "force", "stiffness"]
+
+
 @pytest.mark.parametrize("options", [{}, {"finish": "none", "max_iterations": 3}])
 def test_of_a_wall_that_falls_no_state_is_told_that_does_not_exist(
     capsys: pytest.CaptureFixture[str], options: dict[str, Any]
