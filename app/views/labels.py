@@ -60,7 +60,7 @@ def labels_of(picture: Picture) -> tuple[Columns, Columns]:
         words += _name_of_joint(picture, obstacles)
     if picture.description.tilt is not None:
         words.append(_slope(picture))
-    words = _apart(picture, inside(picture.layout, words), obstacles)
+    words = _apart(inside(picture.layout, words), obstacles)
     x, y = np.reshape([word.anchor for word in words], (-1, 2)).T
     columns = {
         "x": x,
@@ -69,7 +69,7 @@ def labels_of(picture: Picture) -> tuple[Columns, Columns]:
         "text_align": [word.align for word in words],
         "text_color": [word.color for word in words],
     }
-    return columns, _leaders(picture, words, obstacles)
+    return columns, _leaders(words, obstacles)
 
 
 class Obstacles:
@@ -85,6 +85,9 @@ class Obstacles:
 
     def has_bodies_below(self, word: Word) -> bool:
         """Check whether a label covers bodies."""
+        # Most labels stand beside all of them.
+        if not lies_on(self.layout, word, *self._whole):
+            return False
         return lies_on(self.layout, word, *self._cells)
 
     def has_arrows_below(self, word: Word) -> bool:
@@ -110,6 +113,22 @@ class Obstacles:
         cells = self._picture.frame.run.geometry.cells
         corners = self._picture.page(self._picture.nodes[cells])
         return corners.min(axis=1), corners.max(axis=1)
+
+    @cached_property
+    def weights(self) -> dict[str, Array]:
+        """Tails of the arrows of weights, (2,) each, px, by the words of these."""
+        tails = {}
+        for arrows in self._picture.arrows:
+            if arrows.act.side == "body" and len(arrows.lines):
+                text = text_of(arrows.act, self._picture.now)
+                tails[text] = self._picture.page(arrows.lines[0, 0])
+        return tails
+
+    @cached_property
+    def _whole(self) -> tuple[Array, Array]:
+        """Lower left and upper right corner of all bodies, (1, 2) each, px."""
+        nodes = self._picture.page(self._picture.nodes)
+        return nodes.min(axis=0, keepdims=True), nodes.max(axis=0, keepdims=True)
 
     @cached_property
     def _shafts(self) -> Array:
@@ -196,14 +215,14 @@ def _beside(word: Word, line: Array, obstacles: Obstacles) -> Word:
     return next(iter(free), word)
 
 
-def _leaders(picture: Picture, words: Sequence[Word], obstacles: Obstacles) -> Columns:
+def _leaders(words: Sequence[Word], obstacles: Obstacles) -> Columns:
     """Leader lines from labels of a weight to the tails of its distant arrows.
 
     None where the line would lie on other words or arrows.
     """
     columns: Columns = {"xs": [], "ys": []}
     for word in words:
-        line = _leader(picture, word)
+        line = _leader(word, obstacles)
         others = [other for other in words if other is not word]
         if len(line) and not _is_cut(line, others, obstacles):
             columns["xs"].append(line[:, 0].tolist())
@@ -211,18 +230,14 @@ def _leaders(picture: Picture, words: Sequence[Word], obstacles: Obstacles) -> C
     return columns
 
 
-def _leader(picture: Picture, word: Word) -> Array:
+def _leader(word: Word, obstacles: Obstacles) -> Array:
     """Line from words of a weight to the tail of its arrow, (2, 2), px.
 
     It has no points where other words are given, or the arrow is near.
     """
-    layout = picture.layout
-    for arrows in picture.arrows:
-        if arrows.act.side != "body" or not len(arrows.lines):
-            continue
-        if word.text != text_of(arrows.act, picture.now):
-            continue
-        tail = picture.page(arrows.lines[0, 0])
+    layout = obstacles.layout
+    tail = obstacles.weights.get(word.text)
+    if tail is not None:
         # From the point of the words that is nearest.
         begin = np.clip(tail, *box_of(layout, word))
         if np.hypot(*(tail - begin)) >= FAR * layout.row:
@@ -326,28 +341,28 @@ def _names_aside(picture: Picture, line: Array) -> list[Word]:
     return names
 
 
-def _apart(picture: Picture, words: Sequence[Word], obstacles: Obstacles) -> list[Word]:
-    """Labels, moved up, down or aside, off earlier ones and off arrows.
+def _apart(words: Sequence[Word], obstacles: Obstacles) -> list[Word]:
+    """Labels, moved up, down or aside, off earlier ones, arrows and bodies.
 
-    They go to the next place that bodies leave free, too, if there is one, and from
-    which a line may lead to an arrow that is far.
+    They go to the next place that is free, and from which a line may lead to an arrow
+    that is far; where there is none, arrows come before bodies.
     """
-    layout = picture.layout
+    layout = obstacles.layout
     placed: list[Word] = []
     for index, word in enumerate(words):
         others = [*placed, *words[index + 1 :]]
 
-        def burden(place: Word, others: Sequence[Word] = others) -> tuple[bool, bool]:
-            line = _leader(picture, place)
-            return obstacles.covered_by(place), _is_cut(line, others, obstacles)
+        def burden(place: Word, others: Sequence[Word] = others) -> tuple[bool, ...]:
+            return (
+                obstacles.has_arrows_below(place),
+                obstacles.has_bodies_below(place),
+                _is_cut(_leader(place, obstacles), others, obstacles),
+            )
 
-        places = around(layout, word, MOST_ROWS)
-        if not (meets(layout, word, placed) or obstacles.has_arrows_below(word)):
-            # It stays unless its line alone is cut.
-            stays = [word]
-            if burden(word)[1]:
-                stays += places
-            places = stays
-        free = [one for one in places if not meets(layout, one, placed)]
-        placed.append(min(free, key=burden, default=word))
+        chosen = word
+        if meets(layout, word, placed) or any(burden(word)):
+            places = [word, *around(layout, word, MOST_ROWS)]
+            free = [one for one in places if not meets(layout, one, placed)]
+            chosen = min(free, key=burden, default=word)
+        placed.append(chosen)
     return placed

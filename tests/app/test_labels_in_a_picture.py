@@ -150,6 +150,22 @@ def test_words_meet_no_arrow_at_the_end_of_a_body(
         assert not meet(box, corners, corners), text
 
 
+def test_words_lie_on_no_band_that_goes_on_beyond_its_end() -> None:
+    """Both ends of three turns on a bollard stand on top, one beside the other."""
+    frame = frame_of(LESSONS["turns-on-a-bollard"].settings)
+    view = shown(frame)
+    view.magnify("28px")
+    view.lay_out(1220.0, 760.0)
+    for phase in (0.0, *PHASES):
+        view.update(frame, Selection(phase), None)
+        picture = picture_of(view)
+        corners = picture.page(picture.nodes[frame.run.geometry.cells])
+        low = corners.min(axis=1)
+        high = corners.max(axis=1)
+        for text, box in boxes_of_words(view, letter=14.0, half=10.0):
+            assert not meet(box, low, high), (phase, text)
+
+
 @pytest.mark.parametrize(("name", "height"), [("incline", 330.0), ("wall", 215.0)])
 def test_a_line_leads_from_the_words_of_a_weight_to_its_arrow(
     name: str, height: float
