@@ -57,7 +57,7 @@ class Refinement:
         return all(math.isfinite(value) for value in self.values)
 
     @property
-    def _steps(self) -> tuple[float, float]:
+    def steps(self) -> tuple[float, float]:
         """Differences from mesh to mesh; zero if all values are equal."""
         coarse, middle, fine = self.values
         size = max(abs(value) for value in self.values)
@@ -69,7 +69,7 @@ class Refinement:
     @property
     def order(self) -> float | None:
         """Order of convergence: power of the size in the error; None without any."""
-        first, second = self._steps
+        first, second = self.steps
         if first * second > 0.0:
             return math.log2(first / second)
         return None
@@ -81,13 +81,13 @@ class Refinement:
         fine = self.values[-1]
         if order is None or not LEAST_ORDER <= order <= LARGEST_ORDER:
             return fine
-        return fine + self._steps[1] / math.expm1(order * math.log(2.0))
+        return fine + self.steps[1] / math.expm1(order * math.log(2.0))
 
     @property
     def margin(self) -> float:
         """Margin of the limit, to either side."""
         order = self.order
-        largest = max(abs(step) for step in self._steps)
+        largest = max(abs(step) for step in self.steps)
         if order is None or order < LEAST_ORDER:
             return UNSURE * largest
         if order > LARGEST_ORDER:
@@ -97,7 +97,7 @@ class Refinement:
     @property
     def deviation(self) -> float:
         """Largest error of the run's value, as a share of the limit."""
-        if not any(self._steps):
+        if not any(self.steps):
             return 0.0
         error = abs(self.values[self.own] - self.limit) + self.margin
         if self.limit:
@@ -235,7 +235,13 @@ def _limit_sentence(refinement: Refinement, unit: str, size: str) -> str:
             f"{limit}, if there is one."
         )
     if order > LARGEST_ORDER:
-        return f"It hardly changes any more with {size}: {limit}."
+        first, second = refinement.steps
+        # The last change alone would promise too much.
+        return (
+            f"It changed by {abs(first):.3g} {unit}, then by {abs(second):.3g} {unit}, "
+            f"which falls faster than any power of {size} that is to be expected: "
+            f"{limit}, by the first change."
+        ).replace(" ,", ",")
     return (
         f"Its error goes with the power {order:.2f} of {size}, and with ever smaller "
         f"ones it becomes {limit}."
