@@ -426,8 +426,8 @@ class Echoes:
                 self._forget()
                 self._state.given += 1
                 number = self._state.given
-                # A browser that is never idle may tell too soon, and what is replaced
-                # comes back yet. A person's value never does.
+                # A browser that is never idle may report too early: then a replaced
+                # value still comes back, but never a value of the user.
                 if widget.value == self._last:
                     self._given.append((number, self._last))
                 self._given.append((number, value))

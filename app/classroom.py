@@ -78,7 +78,7 @@ class Classroom:
 
     def end(self) -> None:
         """End the class; followers keep the last picture."""
-        # As if the leader had gone long ago: nobody waits.
+        # As if the leader had left long ago, so that nobody waits.
         self._let_go(-math.inf)
         self.notify()
 
@@ -281,7 +281,7 @@ class ClassMember(param.Parameterized):
         """Show the present state on the page's next tick, once for several calls."""
         if not self._is_due:
             self._is_due = True
-            # Else the tick would take the page that told it for its own.
+            # Else the tick would run in the context of the page that caused it.
             with set_curdoc(self._document):
                 self._document.add_next_tick_callback(self._take)
 

@@ -78,7 +78,7 @@ class SettingControl:
         self.field, self.views = self._make()
         self.field.param.watch(lambda event: self._on_field(event.new), "value")
         self.update()
-        # No browser has shown what the widgets were made with.
+        # No browser has shown the initial values of the widgets.
         self._echoes = Echoes(state)
         self._positions = Echoes(state)
 

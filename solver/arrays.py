@@ -77,7 +77,7 @@ def distinct(numbers: Indices, count: int) -> tuple[Indices, Indices, Indices]:
     shape, and the place of every number among the distinct ones, (n,).
     """
     first = np.full(count, -1)
-    # What is written last stays.
+    # The last write wins.
     first[numbers[::-1]] = np.arange(len(numbers) - 1, -1, -1)
     found = np.flatnonzero(first >= 0)
     places = np.empty(count, dtype=np.intp)
@@ -133,7 +133,7 @@ def separated(load: Array) -> tuple[Array, Array]:
     patterns = np.zeros((0, len(load)))
     rest = load / power_of_two(load)
     smallest = float(np.finfo(float).eps * np.abs(rest).max(initial=0.0))
-    # Gram-Schmidt by the largest rest, as a factorisation with pivoting.
+    # Gram-Schmidt by the largest residual, as a factorisation with pivoting.
     while len(patterns) < load.shape[1] // 2:
         largest = int(np.abs(rest).max(axis=0, initial=0.0).argmax())
         pattern = rest[:, largest] - patterns.T @ (patterns @ rest[:, largest])

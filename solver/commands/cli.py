@@ -128,7 +128,7 @@ def _parser() -> argparse.ArgumentParser:
     add_checks(commands)
     add_examples(commands)
     for further in entry_points(group="slipfront.commands"):
-        with contextlib.suppress(ImportError):  # the engine may be there alone
+        with contextlib.suppress(ImportError):  # the package of the page may be missing
             further.load()(commands)
     return parser
 

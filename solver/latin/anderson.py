@@ -129,7 +129,7 @@ class AndersonState:
         size = float(np.sqrt(residual @ residual))
         if not size > 0.0 or not np.isfinite(size):
             return
-        # Before the mixture, which would be made of differences that misled.
+        # Before the mixture, which would use misleading differences.
         if size > self._growth * self._smallest:
             self._forget()
         if np.isfinite(self._smallest):  # there is an image before

@@ -228,8 +228,7 @@ class Instants:
                 solved = newton.follow(
                     begin, right_sides, newton.approach(begin, right_sides)
                 )
-        # Where one instant is lost the next ones start from nothing sure: they get no
-        # costly search.
+        # After a lost instant the start is uncertain: no costly search is tried.
         self.is_stuck = solved is None
         self._is_lost = self._is_lost or self.is_stuck
         return solved
@@ -248,7 +247,7 @@ class Instants:
         rules = self._rules
         force = self._force
         held = rules.compliance * force - np.where(rules.normal, self._opening, 0.0)
-        # Under these nothing is added to the instant before.
+        # With these right-hand sides all increments are zero.
         pulled = -self.system.on_base(force)
         begin = RightSides(pulled, self._bound(max(instant - 1, 0)), held)
         at, share = self._followed(

@@ -218,8 +218,8 @@ class _InterfaceFields:
         """Violation of Coulomb's law at points of known pressure, (n, n_instants)."""
         if_kept = self._violation(OPENED * length_size, length_size, force_size)
         if_broken = self._violation(0.0, length_size, force_size)
-        # Whether what may be rounding opens a bond nobody can tell: either may count,
-        # at each point for all instants.
+        # An opening within rounding may break a bond or not: at each point the better
+        # case counts, for all instants.
         is_less = np.max(if_broken, axis=1) < np.max(if_kept, axis=1)
         violation = np.where(is_less[:, None], if_broken, if_kept)
         return np.asarray(violation[~self.is_prescribed])

@@ -201,7 +201,7 @@ def collapse_of(
     before = np.zeros(len(loads))
     path = loads.T / unit
     ends = _ends_of_line(problem, path)
-    # Mostly nothing falls, which two programs tell of loads on a line.
+    # Mostly nothing collapses: for proportional loads two linear programs show that.
     if ends and all(program.holds(end, path[end], stop) for end in ends):
         return None
     for instant, now in enumerate(path):

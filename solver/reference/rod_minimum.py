@@ -195,7 +195,7 @@ class Search:
         self.solutions = 0
         self._parts: dict[int, tuple[slice, Search]] = {}
         self.rubs = (bound > 0.0) * movable
-        # Neither held nor rubbing.
+        # Free: neither held nor with friction.
         self._free = movable - self.rubs
         self._limit = np.where(self.rubs > 0.0, bound, np.inf)
         # Rods are parts of the chain that no stiffness ties: each is mended on its own.

@@ -43,14 +43,14 @@ def for_meshio(data: bytes) -> bytes:
             raise _of_parts("other files that it includes")
         if keyword == "*NODE":
             nodes += rows
-            # The name that a block gives to its nodes says what a set of them says.
+            # A block of nodes with a name is equivalent to a set of these nodes.
             rest += _named_nodes(head, rows)
         elif keyword == "*ELEMENT":
             rest += [_with_known_element(head, heads.count(keyword)), *rows]
         elif keyword == "*NSET":
             rest += [head, *rows]
         elif keyword == "*ELSET" and all(_is_of_numbers(row) for row in rows):
-            # Of a set of sets meshio makes lists, and it says nothing new.
+            # meshio turns a set of sets into lists, which add no information.
             rest += [head, *rows]
     if heads.count("*PART") > 1 or heads.count("*INSTANCE") > 1:
         raise _of_parts("several parts")

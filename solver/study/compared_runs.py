@@ -167,7 +167,7 @@ class ComparedRuns:
 
     def _on_scale(self, values: Array) -> Array:
         """Scaled settings z, shape (p,), from values in SI."""
-        # Both scales are computed for all settings, and one of them means nothing.
+        # Both scales are computed for all settings; one of them is not used.
         with np.errstate(divide="ignore", invalid="ignore"):
             in_logarithm = np.log(values / self._start)
             in_size = (values - self._start) / self._size

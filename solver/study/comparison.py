@@ -344,7 +344,7 @@ def weights_of(positions: Array, times: Array) -> Array:
 
 
 def _covers(grid: Array, places: Array) -> Flags:
-    """Check which places, (n,), lie between the ends of a grid, (n_grid,)."""
+    """Mask of the positions, (n,), between the ends of a grid, (n_grid,)."""
     low = float(grid.min())
     high = float(grid.max())
     edge = EDGE * (high - low)

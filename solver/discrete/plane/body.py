@@ -137,7 +137,7 @@ class Body:
 def _kinds_of_joint(size: int) -> dict[str, Kind]:
     """Kinds of the fields of a joint with `size` pairs."""
     return {
-        # Which nodes there are is known to the bodies.
+        # Only the bodies know how many nodes they have.
         "nodes": Numbers(((size,),), whole=True),
         "normals": Numbers(((size, 2),)),
         "gap": AnyOf(ANY_NUMBER, Numbers(((size,),))),

@@ -84,7 +84,7 @@ class NodeFrames:
         """Turn frames of nodes, (n,), to the normals, (n, 2), of their first joint."""
         tangents = np.stack([normals[:, 1], -normals[:, 0]], axis=1)
         wanted = np.stack([tangents, normals], axis=1)
-        # What is written last stays.
+        # The last write wins.
         self.frames[nodes[::-1]] = wanted[::-1]
         differs = np.abs(self.frames[nodes] - wanted).max(axis=(1, 2)) > ALIKE
         self._unlike[nodes[differs]] = True

@@ -155,7 +155,7 @@ class PGDGroup(Group):
         pgd = self._pgd
         target = self._columns(shared.members, self.target)
         wanted = basis.coefficients(target)
-        # What was last reflected is read already, and its place is free.
+        # The last reflection has been read, so its memory is free.
         scratch = self._columns(shared.members, self._reflected)
         whole = basis.squared(target, scratch)
         # By Pythagoras, as modes are orthonormal: the rest itself is made only if it

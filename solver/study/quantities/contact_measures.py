@@ -37,7 +37,7 @@ _over_a_displacement = attrgetter("loop_is_over_displacement")
 
 
 def _has_no_wires_around(settings: Settings) -> bool:
-    """Check that the loop is not the moment over the curvature of a rope."""
+    """Check whether the loop is not the moment over the curvature of a rope."""
     return settings.kind != "helices"
 
 
@@ -95,7 +95,7 @@ def force(run: FinishedRun, at: float | None) -> float:
 
 
 def _has_axial_force(settings: Settings) -> bool:
-    """Check that bodies are rods, wires, or a band on a guide."""
+    """Check whether bodies are rods, wires, or a band on a guide."""
     return settings.kind in ("rod", "wires") or settings.scene == "belt"
 
 

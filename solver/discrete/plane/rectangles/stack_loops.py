@@ -151,7 +151,7 @@ def loop_on_ground(
         driven = [name for name in DRIVEN if not sides[name].is_zero]
         side = next(iter(driven), side)
     holding = [each for each in sides.values() if each.x.prescribed]
-    # Sides that share a corner share its force, too: the ground tells the sum.
+    # Sides that share a corner share its force, too: the ground gives the sum.
     if bodies == 1 or len(holding) > 1 + bool(strips):
         return ShearLoop(side, None, length)
     return ShearLoop(side, sides[side].x, length)
