@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Callable
+from functools import cache
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -61,16 +62,27 @@ def explained(text: str, *terms: str) -> Markup:
     """
     if not terms:
         return Markup(escape(text))
-    # Of terms that begin alike the longest.
-    longest_first = sorted(terms, key=len, reverse=True)
-    pattern = rf"(?<!\w)({'|'.join(map(re.escape, longest_first))})(?!\w)"
-    parts = re.split(pattern, text)
+    parts = _whole_words(terms).split(text)
     for number, part in enumerate(parts):
         if number % 2:
-            parts[number] = html("term.html", term=part, meaning=MEANINGS[part])
+            parts[number] = _with_meaning(part)
         else:
             parts[number] = escape(part)
     return Markup("".join(parts))
+
+
+# The same terms stand in the words of each picture.
+@cache
+def _whole_words(terms: tuple[str, ...]) -> re.Pattern[str]:
+    """Pattern of terms; of some that begin alike it takes the longest."""
+    longest_first = sorted(terms, key=len, reverse=True)
+    return re.compile(rf"(?<!\w)({'|'.join(map(re.escape, longest_first))})(?!\w)")
+
+
+@cache
+def _with_meaning(term: str) -> str:
+    """A term of the glossary, with its meaning at hand (HTML)."""
+    return html("term.html", term=term, meaning=MEANINGS[term])
 
 
 def looks(*roles: str) -> dict[str, Any]:
