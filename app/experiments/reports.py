@@ -86,7 +86,7 @@ class CommandTab(ABC):
         return self._done.get(self.report, {})
 
     def said(self, progress: str) -> str:
-        """What a command says of its progress, in the page's words."""
+        """Progress of a command, in the words of the page."""
         return progress
 
     def start(self) -> None:
