@@ -41,8 +41,8 @@ HELP = (
     "drawn beside it, too."
 )
 HEADS = (
-    "A name for each column, with its unit in brackets, as in `time [s], displacement "
-    "[mm], force [kN]`. Others are passed over; one name more is that of the row's "
+    "A name for each column, with its unit in brackets, as in “time [s], displacement "
+    "[mm], force [kN]”. Others are passed over; one name more is that of the row's "
     "number."
 )
 SHOWN = 5

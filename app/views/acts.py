@@ -243,6 +243,9 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
     elif _has_aside(layout, side):
         # Clear of an arrow along the end of the bodies.
         shift = [22.0 * away, 15.0]
+    elif act.unit == "m":
+        # Clear of the rollers of an end that is moved.
+        shift = [(9.0 + 2.0 * RADIUS) * away, 15.0]
     else:
         shift = [9.0 * away, 15.0]
     return arrows.points[-1] + shift, align

@@ -363,6 +363,8 @@ def _apart(words: Sequence[Word], obstacles: Obstacles) -> list[Word]:
         if meets(layout, word, placed) or any(burden(word)):
             places = [word, *around(layout, word, MOST_ROWS)]
             free = [one for one in places if not meets(layout, one, placed)]
-            chosen = min(free, key=burden, default=word)
+            # Without a place that is free of all, the one with the least burden.
+            unburdened = (one for one in free if not any(burden(one)))
+            chosen = next(unburdened, None) or min(free, key=burden, default=word)
         placed.append(chosen)
     return placed

@@ -136,12 +136,36 @@ def test_on_a_phone_in_the_dark_nothing_is_wider_than_the_screen_and_the_scene_i
     assert moved is not None
     assert moved["y"] < box["y"] - 50.0
     button(page, "Close drawer").click()
+    # All buttons of the header are in sight, or in its list.
+    for name in ("Lessons", "More", "Toggle theme"):
+        expect(button(page, name)).to_be_in_viewport(ratio=1.0)
+    button(page, "More").click()
     # A dialog has all its buttons, and the one that closes it.
-    button(page, "Take away").click()
+    page.get_by_role("menuitem", name="Take away").click()
     dialog = page.get_by_role("dialog")
     for name in ("Copy link", "close"):
         expect(dialog.get_by_role("button", name=name)).to_be_in_viewport(ratio=1.0)
     close_dialog(page)
+
+
+def test_on_a_phone_the_picture_stays_in_sight_above_the_text_of_a_case(
+    phone: Page,
+) -> None:
+    page = phone
+    go(page, "?case=pile")
+    spring = field(page, "Spring at the right end")
+    spring.scroll_into_view_if_needed()
+    expect(spring).to_be_in_viewport()
+    expect(figure(page, 0)).to_be_in_viewport(ratio=0.6)
+    # The plots below the picture come up to the text, too.
+    last = page.locator(".plots .bk-Figure").last
+    last.evaluate("(plot) => plot.scrollIntoView({block: 'start'})")
+    expect(spring).to_be_in_viewport()
+    foot = last.bounding_box()
+    text = page.locator(".lesson").bounding_box()
+    assert foot is not None
+    assert text is not None
+    assert foot["y"] + foot["height"] <= text["y"] + 1.0
 
 
 def test_keys_open_dialogs_selects_and_the_view_for_a_projector(page: Page) -> None:
