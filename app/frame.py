@@ -198,7 +198,7 @@ class Frame:
     status: Status | None = None
     """Status with which the run ended; None while it continues."""
     energy: float = float("nan")
-    """Energy lost in the whole interval, J."""
+    """Energy dissipated in the whole interval, J."""
     residual: float | None = None
     """KKT residual of a certified solution; None for all other iterates."""
     is_followed: bool = False

@@ -197,8 +197,8 @@ def figures_line(frame: Frame, selection: Selection) -> str:
     # Beside the work that the largest force does on the largest displacement.
     work = float(np.abs(frame.loop).max(axis=1).prod())
     energy = settled(frame.energy, work)
-    figures["Energy lost"] = unit_for(abs(energy), "J")(energy)
-    for title in ("Slips", "Energy lost"):
+    figures["Energy dissipated"] = unit_for(abs(energy), "J")(energy)
+    for title in ("Slips", "Energy dissipated"):
         hints[title] = MEANINGS[title]
     beside = frame.extras.get("beside")
     if beside is not None:
