@@ -203,7 +203,7 @@ def check_forces(body_forces: Array) -> None:
 
 
 def tributary(elements: int) -> Array:
-    """Tributary length of each node of a row of equal elements, over an element's."""
+    """Tributary length of nodes along equal elements, over an element's, (n_nodes,)."""
     shares = np.ones(elements + 1)
     shares[[0, -1]] = 0.5
     return shares

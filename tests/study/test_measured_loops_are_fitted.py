@@ -404,16 +404,13 @@ def test_the_commands_compare_and_fit_and_write_what_they_found(
     lines = (out / "parameters.csv").read_text().splitlines()
     assert lines[0].startswith("setting,unit,start,value,standard_error,lower,upper")
     # A person reads titles, a program keys.
-    for part in ("<script", "Friction coefficient"):
-        assert part in (out / "fit.html").read_text()
+    report = (out / "fit.html").read_text()
+    assert "<script" in report
+    assert "Friction coefficient" in report
     # The settings and the loop that were written are those that were found.
     assert main(["compare", str(out / "settings.toml"), "--with", str(table)]) == 0
-    far = 100.0 * found["distance"]
-    told = capsys.readouterr().out
-    assert (
-        told == f"End displacement: {far:.4g} % from measured.csv, at 16 of 16 rows\n"
-    )
-    axes = saved.structure().axes
-    fitted = in_text((out / "loop.csv").read_text(), axes)
+    away = f"{100.0 * found['distance']:.4g} % from measured.csv, at 16 of 16 rows"
+    assert capsys.readouterr().out == f"End displacement: {away}\n"
+    fitted = in_text((out / "loop.csv").read_text(), saved.structure().axes)
     run = finished_run(saved, errors=False, indicators=False)
     assert beside(run, fitted).of(run.iterate) < 1e-6

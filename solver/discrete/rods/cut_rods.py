@@ -446,7 +446,7 @@ def _free_force(rods: Rods, stiffness: Array) -> Array | None:
 
 
 def _seen(rods: Rods, end: End, node: int) -> Array:
-    """Displacement of an end's clamp or spring relative to the support, m."""
+    """Displacement of an end's clamp or spring on the support, (n_instants,), m."""
     assert end.displacement is not None
     if rods.settlement is None:
         return end.displacement
