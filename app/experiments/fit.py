@@ -95,11 +95,15 @@ class FitTab(CommandTab):
         self._draw()
 
     def said(self, progress: str) -> str:
-        """Progress with titles of settings in place of their keys."""
+        """Progress with titles of settings in place of their keys before values."""
         definitions = self.state.settings.definitions()
-        for name in self.chosen.value:
-            progress = re.sub(rf"\b{name}\b", title_of(definitions[name]), progress)
-        return progress
+        # A refusal may have the same words in a sentence.
+        keys = "|".join(self.chosen.value)
+        return re.sub(
+            rf"(?<=[:,] )({keys})(?= -?\d)",
+            lambda found: title_of(definitions[found[1]]),
+            progress,
+        )
 
     def look(self) -> None:
         """Show the progress of the fit, and its nearest loop so far."""

@@ -119,6 +119,16 @@ class Scene(View):
             fill_color="white",
             line_width=2.5,
         )
+        self._draw_words()
+        self.mark(KEYS | {"note": UNSEEN})
+        names = ["note"]
+        if not self.is_bare:
+            names = [*KEYS, "note"]
+        self._keys = self.legend(*names, place="center")
+        self._keys.location = "bottom_left"
+
+    def _draw_words(self) -> None:
+        """Add the words with their lines, and the marks of a first visit."""
         self.add(
             "leaders",
             "MultiLine",
@@ -147,12 +157,6 @@ class Scene(View):
                 padding=5,
                 border_radius=4,
             )
-        self.mark(KEYS | {"note": UNSEEN})
-        names = ["note"]
-        if not self.is_bare:
-            names = [*KEYS, "note"]
-        self._keys = self.legend(*names, place="center")
-        self._keys.location = "bottom_left"
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the bodies at the selected instant."""

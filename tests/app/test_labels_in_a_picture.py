@@ -22,6 +22,16 @@ def picture_of(view: Scene) -> Picture:
     return view.picture
 
 
+def words_on_bodies(view: Scene, frame: Frame, letter: float, half: float) -> list[str]:
+    """Words that lie on bodies, with letters and half a row of these sizes, px."""
+    picture = picture_of(view)
+    corners = picture.page(picture.nodes[frame.run.geometry.cells])
+    low = corners.min(axis=1)
+    high = corners.max(axis=1)
+    boxes = boxes_of_words(view, letter=letter, half=half)
+    return [text for text, box in boxes if meet(box, low, high)]
+
+
 def shafts(picture: Picture) -> np.ndarray:
     """Places along all arrows, and lines over their tails, (n, 2), px."""
     shares = np.linspace(0.0, 1.0, 9)[:, None]
@@ -126,12 +136,7 @@ def test_words_lie_beside_the_bodies(frame: Frame, scene: Scene, width: float) -
     scene.lay_out(width, HEIGHT)
     for phase in PHASES:
         scene.update(frame, Selection(phase), None)
-        picture = picture_of(scene)
-        corners = picture.page(picture.nodes[frame.run.geometry.cells])
-        low = corners.min(axis=1)
-        high = corners.max(axis=1)
-        for text, box in boxes_of_words(scene, letter=6.0, half=4.0):
-            assert not meet(box, low, high), (phase, text)
+        assert not words_on_bodies(scene, frame, letter=6.0, half=4.0), phase
 
 
 @pytest.mark.parametrize("phase", [0.0, 0.25, 0.4, 0.8, 0.96875])
@@ -158,12 +163,7 @@ def test_words_lie_on_no_band_that_goes_on_beyond_its_end() -> None:
     view.lay_out(1220.0, 760.0)
     for phase in (0.0, *PHASES):
         view.update(frame, Selection(phase), None)
-        picture = picture_of(view)
-        corners = picture.page(picture.nodes[frame.run.geometry.cells])
-        low = corners.min(axis=1)
-        high = corners.max(axis=1)
-        for text, box in boxes_of_words(view, letter=14.0, half=10.0):
-            assert not meet(box, low, high), (phase, text)
+        assert not words_on_bodies(view, frame, letter=14.0, half=10.0), phase
 
 
 @pytest.mark.parametrize(("name", "height"), [("incline", 330.0), ("wall", 215.0)])

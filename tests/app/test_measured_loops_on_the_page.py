@@ -158,6 +158,15 @@ def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
     tab.end()
 
 
+def test_progress_has_titles_of_settings_and_sentences_keep_their_words() -> None:
+    tab = FitTab(PageState(bar(), tab="Fit"))
+    tab.chosen.value = ["friction", "peak"]
+    said = tab.said("8 runs: friction 0.37, peak -900 N, 2 % away")
+    assert said == "8 runs: Friction coefficient μ 0.37, Peak load -900 N, 2 % away"
+    sentence = "The loop is of no peak: friction changes nothing"
+    assert tab.said(sentence) == sentence
+
+
 def test_a_fit_is_cancelled_or_refused_in_words_and_leaves_nothing() -> None:
     state = PageState(bar(), tab="Fit")
     tab = FitTab(state)

@@ -373,6 +373,15 @@ def test_the_command_refuses_settings_that_no_loop_tells(
     assert why in capsys.readouterr().err
 
 
+def test_the_command_takes_settings_in_several_options(tmp_path, capsys) -> None:
+    """Of two the last one alone was fitted; here it sees that both are one."""
+    table, sizes = _written(tmp_path)
+    options = ["--with", str(table), "--out", str(tmp_path / "out")]
+    twice = ["--vary", "friction", "--vary", "friction"]
+    assert main(["fit", "bar", *sizes, *options, *twice]) == 2
+    assert "one to 4 settings, each once" in capsys.readouterr().err
+
+
 def _written(folder):
     """A measured loop as a file, and the options of its bar."""
     sizes = BAR | FEW
