@@ -6,10 +6,11 @@ from functools import singledispatch
 
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.bodies import Bodies
-from solver.discrete.plane.body import Body, Held, Joint, Load
+from solver.discrete.plane.body import Body, Held, Load, NodeSpring
+from solver.discrete.plane.joint import Joint
+from solver.discrete.plane.lattice import Lattice
 from solver.discrete.plane.makers.band import Band
 from solver.discrete.plane.meshes import Mesh
-from solver.discrete.plane.rectangles import stack_problem
 from solver.discrete.plane.rectangles.sides import Side, SideComponent, Spring, Support
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
@@ -28,7 +29,9 @@ __all__ = [
     "Held",
     "Joint",
     "Load",
+    "Lattice",
     "Mesh",
+    "NodeSpring",
     "Problem",
     "Rods",
     "Rope",
@@ -64,7 +67,14 @@ def discretise(structure: Structure) -> Problem:
 
 discretise.register(Rods, cut_rods.problem_of)
 discretise.register(Rope, cut_rope.problem_of)
-discretise.register(Stack, stack_problem.problem_of)
+
+
+@discretise.register
+def _of_stack(structure: Stack) -> Problem:
+    """Discrete problem of rectangular bodies."""
+    from solver.discrete.plane.rectangles import stack_problem
+
+    return stack_problem.problem_of(structure)
 
 
 @discretise.register

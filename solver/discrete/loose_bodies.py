@@ -8,7 +8,12 @@ from scipy.sparse.csgraph import connected_components
 
 from solver.arrays import Indices
 from solver.discrete.problem import Problem
+from solver.refusal import RefusedError
 from solver.laws import Contact
+
+
+class LooseBodiesError(RefusedError):
+    """Refused structure: bodies can move though all contacts are closed and stick."""
 
 
 def loose_bodies(problem: Problem) -> Indices:

@@ -13,7 +13,7 @@ from scipy import sparse
 from solver.arrays import Array
 from solver.discrete import discretise
 from solver.discrete.plane.rectangles.bricks import Brick
-from solver.discrete.plane.rectangles.cut_rectangles import ends_along
+from solver.discrete.plane.rectangles.stack_bodies import ends_along
 from solver.discrete.plane.rectangles.cut_stack import CutStack
 from solver.discrete.plane.rectangles.sides import Side, SideComponent
 from solver.discrete.plane.rectangles.stack import Stack

@@ -12,10 +12,8 @@ from scipy import sparse
 from solver.arrays import Array, Indices
 from solver.cache import content_of
 from solver.checks import POSITIVE, Numbers, check
-from solver.discrete.plane.meshes import on_nodes
+from solver.discrete.plane.meshes import HALVES, on_nodes
 
-HALVES = np.array([0.5, 0.5])
-"""Shares of a uniform force on a beam, at its ends."""
 ALONG = np.array([0, 3])
 ACROSS = np.array([1, 2, 4, 5])
 """Degrees of freedom of a beam along its axis, and across and turning."""

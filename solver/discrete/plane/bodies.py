@@ -16,10 +16,12 @@ from solver.checks import (
     Choice,
     Count,
     InstanceOf,
+    Numbers,
     SequenceOf,
     check,
     check_value,
 )
+from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.bodies_refused import (
     check_chains,
     check_held,
@@ -27,10 +29,19 @@ from solver.discrete.plane.bodies_refused import (
     check_load,
     check_names,
     check_pairs,
+    check_spring,
+    check_strengths,
     check_weight,
 )
-from solver.discrete.plane.body import Body, Held, Joint, Load, Shape, turned_by
-from solver.discrete.plane.meshes import Mesh
+from solver.discrete.plane.body import (
+    Body,
+    Held,
+    Load,
+    NodeSpring,
+    Shape,
+    turned_by,
+)
+from solver.discrete.plane.joint import Joint
 from solver.discrete.plane.node_pairs import NodePairs, kinds_of
 from solver.discrete.probes import constant, mean_held, node_sum, reaction
 from solver.discrete.problem import Problem
@@ -57,6 +68,11 @@ class Bodies:
         Friction law of all joints, beside the coefficients.
     macro_degree
         Degree of the macro basis on every piece of a joint or cut.
+    springs
+        Springs that pull nodes of bodies.
+    groups
+        Index of the group of each body, shape (bodies,), or None: bodies of one group
+        pass no macro forces to each other.
     shown
         Name of what the loop shows: a Held or a Load; None is the first.
 
@@ -78,6 +94,8 @@ class Bodies:
     friction_law: FrictionLaw = field(default_factory=FrictionLaw)
     macro_degree: int = 1
     shown: str | None = None
+    springs: Sequence[NodeSpring] = ()
+    groups: Indices | None = None
 
     def __post_init__(self) -> None:
         check(
@@ -90,14 +108,16 @@ class Bodies:
             macro_degree=Count(0),
         )
         # Bodies need not be joined, held or loaded: empty sequences are right.
-        for name, kind in (("joints", Joint), ("held", Held), ("loads", Load)):
+        kinds = {"joints": Joint, "held": Held, "loads": Load, "springs": NodeSpring}
+        for name, kind in kinds.items():
             if getattr(self, name):
                 check_value(
                     f"Bodies.{name}", getattr(self, name), SequenceOf(InstanceOf(kind))
                 )
         check_names(self.bodies)
         # Joints and holds are interfaces of one problem.
-        check_names([*self.joints, *self.held, *self.loads])
+        holds = {held.name: held for held in self.held}.values()
+        check_names([*self.joints, *self.springs, *holds, *self.loads])
         if self.shown is not None:
             shown = [each.name for each in self._given]
             check_value("Bodies.shown", self.shown, Choice(tuple(shown)))
@@ -122,6 +142,10 @@ class Bodies:
             check_held(self.bodies, held, instants)
         for load in self.loads:
             check_load(self.bodies, load, instants)
+        for spring in self.springs:
+            check_spring(self.bodies, spring)
+        check_strengths(self.joints, instants)
+        check(self, groups=Numbers(((len(self.bodies),),), whole=True))
 
     @cached_property
     def first_nodes(self) -> Indices:
@@ -310,7 +334,7 @@ class Bodies:
     def _chains_of(self, given: Held | Load) -> list[Indices]:
         """Chains of edges along the nodes of a hold or load; [] for single nodes."""
         shape = self.bodies[given.body].shape
-        if not isinstance(shape, Mesh):
+        if isinstance(shape, Beam):
             return []
         return shape.chains_of(given.nodes)
 

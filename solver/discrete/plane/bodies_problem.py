@@ -5,7 +5,7 @@ Parts of one body are glued where they were cut. Contact forces are lumped at th
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -14,7 +14,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.discrete.elements import legendre_basis
 from solver.discrete.inside import Inside
-from solver.discrete.loose_bodies import loose_bodies
+from solver.discrete.loose_bodies import LooseBodiesError, loose_bodies
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.cut_shapes import Seam
@@ -22,8 +22,17 @@ from solver.discrete.plane.joint_laws import glued, laws_of
 from solver.discrete.plane.joints_of_bodies import law_of_joints
 from solver.discrete.plane.makers.band import Band
 from solver.discrete.problem import Problem
-from solver.laws import Dirichlet, Interface, Perfect
-from solver.refusal import RefusedError, Words
+from solver.laws import (
+    BodyStiffness,
+    Component,
+    Contact,
+    Dirichlet,
+    FrictionLaw,
+    Interface,
+    Perfect,
+    Unilateral,
+)
+from solver.refusal import Words
 
 
 def problem_of(structure: Bodies) -> Problem:
@@ -45,13 +54,13 @@ def problem_of(structure: Bodies) -> Problem:
         instants=structure.instants,
         scales=scales,
         inside=inside,
-        has_short_joints=not cut.frames.has_pair.all(),
-        order=tuple(cut.joint_names),
+        has_short_joints=not np.all(cut.frames.has_pair | cut.frames.is_held),
+        order=(*cut.joint_names, *[spring.name for spring in structure.springs]),
     )
     loose = loose_bodies(problem)
     if len(loose):
         names = ", ".join(structure.bodies[number].name for number in loose)
-        raise RefusedError(
+        raise LooseBodiesError(
             "Bodies.held",
             Words(f"displacements that leave free: {names}"),
             "holds and joints that leave no body free to move or to turn, where all "
@@ -82,13 +91,18 @@ def problem_of_band(band: Band) -> Problem:
 def _interfaces(cut: CutBodies) -> Iterator[tuple[str, Interface]]:
     """All interfaces by name: contacts, then cuts, then prescribed displacements."""
     yield from laws_of(cut, partial(law_of_joints, cut))
+    for number, spring in enumerate(cut.structure.springs):
+        yield spring.name, _spring(cut, number)
     for body, of_body in enumerate(cut.structure.bodies):
         for number, seam in enumerate(cut.cuts[body].seams):
             first, second = seam.parts
             name = f"cut {first + 1} to {second + 1} of {of_body.name}"
             yield name, _glued(cut, body, number, seam)
+    by_name = dict[str, list[int]]()
     for number, held in enumerate(cut.structure.held):
-        yield held.name, _prescribed(cut, number)
+        by_name.setdefault(held.name, []).append(number)
+    for name, numbers in by_name.items():
+        yield name, _prescribed(cut, numbers)
 
 
 def _glued(cut: CutBodies, body: int, number: int, seam: Seam) -> Perfect:
@@ -103,26 +117,51 @@ def _glued(cut: CutBodies, body: int, number: int, seam: Seam) -> Perfect:
         # Beams are cut at a node, whose three components all balance.
         return glued(rows, opposite, np.ones((1, 1)))
     reach = np.abs(seam.positions).max()
-    size = cut.shape_parts[cut.owner(body, seam.parts[0])].size
-    slenderness = (seam.weights.sum() / size) ** 2
+    own = cut.shape_parts[cut.owner(body, seam.parts[0])]
+    slenderness = own.slenderness(seam.nodes, seam.weights.sum())
     degree = cut.structure.macro_degree
     basis = legendre_basis(seam.positions / reach, slenderness, degree)
     return glued(rows, opposite, basis, cut.local_frames(body, seam.nodes))
 
 
-def _prescribed(cut: CutBodies, number: int) -> Dirichlet:
-    """Dirichlet law of prescribed displacements."""
-    held = cut.structure.held[number]
+def _spring(cut: CutBodies, number: int) -> Contact:
+    """Contact law of a spring, which pushes its node as if it stood on the left."""
+    structure = cut.structure
+    spring = structure.springs[number]
+    (part,) = [part for part in cut.parts if ("spring", number) in part.traces]
+    rows = part.rows(("spring", number))
+    body = structure.bodies[spring.body]
+    scales = cut.scales
+    compliance = scales.force / scales.displacement / spring.stiffness
+    return Contact(
+        normal=Unilateral(
+            component=Component(rows[:, 0]),
+            gap=np.array([spring.slack / scales.displacement]),
+            compliance=np.array([compliance]),
+        ),
+        tangential=FrictionLaw().at(Component(rows[:, 1]), np.ones(1), (1.0, 1.0)),
+        points=np.zeros(1, dtype=np.intp),
+        positions=body.nodes[[spring.node], 0] - structure.box[0][0],
+        weights=np.array([spring.length]),
+        stiffness_beside=BodyStiffness(above=cut.moduli[spring.body]),
+        is_spring=True,
+    )
+
+
+def _prescribed(cut: CutBodies, numbers: Sequence[int]) -> Dirichlet:
+    """Dirichlet law of prescribed displacements, by the indices of holds."""
     rows = list[Indices]()
     values = list[Array]()
-    shape = len(held.nodes), len(cut.structure.instants)
-    given = np.broadcast_to(held.displacement, shape)
-    _, signs = cut.axes_held(held, held.nodes)
-    scaled = signs[:, None] * given / cut.length
-    for part in range(cut.structure.bodies[held.body].substructures):
-        owner = cut.owner(held.body, part)
-        own = cut.parts[owner]
-        if ("held", number) in own.traces:
-            rows.append(own.rows(("held", number)).ravel())
-            values.append(scaled[cut.shape_parts[owner].has(held.nodes)])
+    for number in numbers:
+        held = cut.structure.held[number]
+        shape = len(held.nodes), len(cut.structure.instants)
+        given = np.broadcast_to(held.displacement, shape)
+        _, signs = cut.axes_held(held, held.nodes)
+        scaled = signs[:, None] * given / cut.length
+        for part in range(cut.structure.bodies[held.body].substructures):
+            owner = cut.owner(held.body, part)
+            own = cut.parts[owner]
+            if ("held", number) in own.traces:
+                rows.append(own.rows(("held", number)).ravel())
+                values.append(scaled[cut.shape_parts[owner].has(held.nodes)])
     return Dirichlet(np.concatenate(rows), np.concatenate(values))

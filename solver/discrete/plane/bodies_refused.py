@@ -9,8 +9,9 @@ import numpy as np
 
 from solver.arrays import Array, Flags, Indices
 from solver.checks import Count, Numbers, check_value
-from solver.discrete.plane.body import Body, Held, Joint, Load
-from solver.discrete.plane.meshes import Mesh
+from solver.discrete.plane.beams import Beam
+from solver.discrete.plane.body import Body, Held, Load, NodeSpring
+from solver.discrete.plane.joint import Joint
 from solver.discrete.plane.node_pairs import NodePairs, along_joints
 from solver.refusal import RefusedError, Words
 
@@ -23,10 +24,10 @@ APART = 0.05
 next node: the middles of edges lie inside a round body."""
 
 
-def check_names(named: Sequence[Body | Joint | Held | Load]) -> None:
+def check_names(named: Sequence[Body | Joint | Held | Load | NodeSpring]) -> None:
     """Refuse names that occur twice, and those of laws for interfaces."""
     for each in named:
-        if isinstance(each, Joint | Held) and each.name in RESERVED:
+        if isinstance(each, Joint | Held | NodeSpring) and each.name in RESERVED:
             raise RefusedError(
                 f"{each}.name",
                 each.name,
@@ -55,9 +56,9 @@ def check_held(bodies: Sequence[Body], held: Held, instants: int) -> None:
     _check_nodes(bodies[held.body], str(held), held.nodes)
     shapes = (instants,), (len(held.nodes), instants)
     check_value(f"{held}.displacement", held.displacement, Numbers(shapes))
-    highest = 2
-    if isinstance(bodies[held.body].shape, Mesh):
-        highest = 1
+    highest = 1
+    if isinstance(bodies[held.body].shape, Beam):
+        highest = 2
     check_value(f"{held}.axis", held.axis, Count(0, highest))
 
 
@@ -67,6 +68,35 @@ def check_load(bodies: Sequence[Body], load: Load, instants: int) -> None:
     _check_nodes(bodies[load.body], str(load), load.nodes)
     shape = (len(load.nodes), 2, instants)
     check_value(f"{load}.force", load.force, Numbers((shape,)))
+
+
+def check_spring(bodies: Sequence[Body], spring: NodeSpring) -> None:
+    """Refuse a spring whose body or node does not exist."""
+    check_value(f"{spring} on body", spring.body, Count(0, len(bodies) - 1))
+    last = len(bodies[spring.body].shape.nodes) - 1
+    check_value(f"{spring}.node", spring.node, Count(0, last))
+
+
+def check_strengths(joints: Sequence[Joint], instants: int) -> None:
+    """Refuse strengths of other instants, and joints on supports of several kinds.
+
+    All joints on supports have one law, and so have all between bodies.
+    """
+    known = [joint for joint in joints if joint.strength is not None]
+    for joint in known:
+        shape = len(joint.nodes), instants
+        check_value(f"{joint}.strength", joint.strength, Numbers((shape,), low=0.0))
+        for other in joints:
+            is_alike = (
+                other.strength is not None and other.is_image == joint.is_image
+            )
+            if (other.below is None) == (joint.below is None) and not is_alike:
+                raise RefusedError(
+                    f"{other}.strength",
+                    Words("of another kind than that of other joints"),
+                    f"a known strength, as {joint} has one",
+                    "give one to all joints on supports, or to none",
+                )
 
 
 def check_joined(bodies: Sequence[Body], joints: Sequence[Joint]) -> None:
@@ -164,7 +194,7 @@ def _check_directions(
     kinds: Sequence[int],
     pairs: NodePairs,
 ) -> None:
-    """Refuse normals that point out of the body above, if it is a mesh."""
+    """Refuse normals that point out of the body above, if that is no line."""
     # Normals in the axes of a shape are the same at equal chains of nodes.
     known = dict[int, Array]()
     for joint, kind in zip(joints, kinds, strict=True):
@@ -172,7 +202,7 @@ def _check_directions(
             shape = bodies[joint.above].shape
             # The line of beams has a body on both of its sides.
             known[kind] = np.zeros((len(joint.nodes), 2))
-            if isinstance(shape, Mesh):
+            if not isinstance(shape, Beam):
                 normals = shape.outward(joint.nodes)
                 sizes = np.linalg.norm(normals, axis=1, keepdims=True)
                 known[kind] = normals / sizes
@@ -180,8 +210,8 @@ def _check_directions(
     above = np.array([joint.above for joint in joints])
     turned = rotations[above[pairs.joints]]
     along = np.einsum("nab,nb,na->n", turned, outward, pairs.normals)
-    is_mesh = np.array([isinstance(bodies[each.above].shape, Mesh) for each in joints])
-    is_refused = (along >= 0.0) & is_mesh[pairs.joints]
+    is_line = np.array([isinstance(bodies[each.above].shape, Beam) for each in joints])
+    is_refused = (along >= 0.0) & ~is_line[pairs.joints]
     if is_refused.any():
         joint, number, _ = _first(along, is_refused, joints, pairs)
         raise RefusedError(

@@ -1,10 +1,10 @@
-"""Bodies of any shape, joints, holds and loads as data."""
+"""Bodies of any shape, and what holds, pulls and loads them, as data."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cache, cached_property
+from functools import cached_property
 
 import numpy as np
 
@@ -26,11 +26,12 @@ from solver.checks import (
 )
 from solver.discrete.elements import MOST_POISSON
 from solver.discrete.plane.beams import Beam
+from solver.discrete.plane.lattice import Lattice
 from solver.discrete.plane.meshes import Mesh
 from solver.refusal import RefusedError, Words
 
-Shape = Mesh | Beam
-SHAPE = InstanceOf(Mesh, Beam)
+Shape = Mesh | Lattice | Beam
+SHAPE = InstanceOf(Mesh, Lattice, Beam)
 POISSON = Number(-1.0, MOST_POISSON, above=True)
 POINT = Numbers(((2,),))
 
@@ -55,7 +56,7 @@ class Body:
     name
         Name in messages.
     shape
-        Mesh, one metre thick, or line of beams.
+        Mesh or lattice, one metre thick, or line of beams.
     young, poisson
         Young's modulus, Pa, and Poisson's ratio, which beams do not read.
     origin
@@ -66,12 +67,15 @@ class Body:
         Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
     substructures
         Number of parts into which the body is cut along edges of its elements.
+    parts
+        Index of the part of every element, (n_elements,); None: parts are found by
+        bisection.
 
     Raises
     ------
     RefusedError
-        For fields out of range, elements of no or negative area, and a mesh of several
-        pieces.
+        For fields out of range, elements of no or negative area, a mesh of several
+        pieces, and parts without elements.
     """
 
     name: str
@@ -82,6 +86,7 @@ class Body:
     angle: float = 0.0
     weight: Array | None = None
     substructures: int = 1
+    parts: Indices | None = None
 
     def __post_init__(self) -> None:
         check(
@@ -99,7 +104,19 @@ class Body:
                 "one piece of elements whose corners run counter-clockwise round them",
                 "mend the mesh there",
             )
-        check(self, substructures=Count(1, len(self.shape.centres)))
+        n_elements = len(self.shape.centres)
+        check(
+            self,
+            substructures=Count(1, n_elements),
+            parts=Numbers(((n_elements,),), 0, self.substructures - 1, whole=True),
+        )
+        if self.parts is not None and len(np.unique(self.parts)) < self.substructures:
+            raise RefusedError(
+                f"{self}.parts",
+                Words(f"{len(np.unique(self.parts))} different ones"),
+                f"all from 0 to {self.substructures - 1}",
+                "lower substructures",
+            )
 
     def __str__(self) -> str:
         return f"Body {self.name!r}"
@@ -115,6 +132,11 @@ class Body:
         return checked_copies(
             self, count, name=names, origin=list(origins), angle=angles.tolist()
         )
+
+    @property
+    def cut_key(self) -> tuple[int, int, int]:
+        """Key of the shape and its parts: bodies of one key are cut alike."""
+        return id(self.shape), self.substructures, id(self.parts)
 
     @cached_property
     def rotation(self) -> Array:
@@ -133,89 +155,11 @@ class Body:
         return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
 
 
-@cache
-def _kinds_of_joint(size: int) -> dict[str, Kind]:
-    """Kinds of the fields of a joint with `size` pairs."""
-    return {
-        # Only the bodies know how many nodes they have.
-        "nodes": Numbers(((size,),), whole=True),
-        "normals": Numbers(((size, 2),)),
-        "gap": AnyOf(ANY_NUMBER, Numbers(((size,),))),
-        "friction": AnyOf(NON_NEGATIVE, Numbers(((size,),), low=0.0)),
-    }
-
-
-@dataclass(frozen=True, eq=False)
-class Joint:
-    """Pairs of nodes of two bodies in contact, or of a body and a rigid support.
-
-    Attributes
-    ----------
-    name
-        Name of the interface.
-    above, nodes
-        Index of the body above, and a chain of its nodes, (n,).
-    below, nodes_below
-        Index of the body below and the chain of its nodes opposite, (n,); None for a
-        rigid rough support.
-    normals
-        Unit normals out of what is below into the body above, shape (n, 2), in global
-        axes. The tangent is the normal turned clockwise by a right angle.
-    gap
-        Opening of each pair, shape (n,), m, negative where the bodies overlap; or one.
-    friction
-        Coefficient of friction, or that of each pair, shape (n,).
-    """
-
-    name: str
-    above: int
-    nodes: Indices
-    below: int | None
-    nodes_below: Indices | None
-    normals: Array
-    gap: Array | float = 0.0
-    friction: Array | float = 0.0
-
-    def __post_init__(self) -> None:
-        kinds = _kinds_of_joint(len(self.nodes))
-        check(self, **kinds)
-        if self.below is not None:
-            check(self, nodes_below=kinds["nodes"])
-
-    def __str__(self) -> str:
-        return f"Joint {self.name!r}"
-
-    def placed(
-        self,
-        names: Sequence[str],
-        above: Sequence[int],
-        below: Sequence[int],
-        normals: Array,
-    ) -> list[Joint]:
-        """Joints like this one with other names, bodies and normals.
-
-        `above` and `below` are the numbers of their bodies, (n,), and `normals` have
-        the shape (n, n_nodes, 2).
-        """
-        count = len(names)
-        shape = count, len(self.nodes), 2
-        check_value("Joint.normals", normals, Numbers((shape,)))
-        return checked_copies(
-            self, count, name=names, above=above, below=below, normals=list(normals)
-        )
-
-    @cached_property
-    def sides(self) -> list[tuple[int, Indices]]:
-        """Bodies and their chains of nodes; the body above comes first."""
-        sides = [(self.above, self.nodes)]
-        if self.below is not None and self.nodes_below is not None:
-            sides.append((self.below, self.nodes_below))
-        return sides
-
-
 @dataclass(frozen=True, eq=False)
 class Held:
     """Nodes of a body whose displacement is prescribed along one axis.
+
+    Holds of one name, which may be of several bodies, are one interface.
 
     Attributes
     ----------
@@ -249,6 +193,36 @@ class Held:
     def mean(self) -> Array:
         """Mean displacement of the nodes over time, shape (n_instants,), m or rad."""
         return np.asarray(np.atleast_2d(self.displacement).mean(axis=0))
+
+
+@dataclass(frozen=True, eq=False)
+class NodeSpring:
+    """A spring that pulls a node of a body to the right, along x.
+
+    Attributes
+    ----------
+    name, body, node
+        Name, index of the body, and index of its node.
+    slack
+        Distance by which the node may move to the left before the spring pulls, m.
+    stiffness
+        Stiffness, N/m.
+    length
+        Length of the side of the body that belongs to the node, m.
+    """
+
+    name: str
+    body: int
+    node: int
+    slack: float
+    stiffness: float
+    length: float
+
+    def __post_init__(self) -> None:
+        check(self, slack=NON_NEGATIVE, stiffness=POSITIVE, length=POSITIVE)
+
+    def __str__(self) -> str:
+        return f"NodeSpring {self.name!r}"
 
 
 @dataclass(frozen=True, eq=False)

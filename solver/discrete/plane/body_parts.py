@@ -8,17 +8,18 @@ from __future__ import annotations
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-import skfem
 from scipy import sparse
 
 from solver.arrays import Array, Flags, Indices
 from solver.cache import CACHE, content_of
 from solver.discrete.condensed_part import PartForce
-from solver.discrete.elements import elastic_matrix
+from solver.discrete.elements import dofs_of, elastic_matrix
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.body import Body
+from solver.discrete.plane.lattice import Lattice
 from solver.discrete.plane.mesh_elasticity import (
     mesh_stiffness,
     mesh_strains,
@@ -26,6 +27,10 @@ from solver.discrete.plane.mesh_elasticity import (
     quadratic_basis,
 )
 from solver.discrete.plane.meshes import Mesh
+from solver.discrete.schur_complement import SchurComplement
+
+if TYPE_CHECKING:
+    import skfem
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,9 +70,9 @@ class ShapePart:
     @property
     def n_axes(self) -> int:
         """Number of degrees of freedom of a node: x, y, and the turn of beams."""
-        if isinstance(self.body.shape, Mesh):
-            return 2
-        return 3
+        if isinstance(self.body.shape, Beam):
+            return 3
+        return 2
 
     def has(self, nodes: Indices) -> Flags:
         """Mask of those nodes of the shape, (n,), that belong to the part."""
@@ -79,17 +84,42 @@ class ShapePart:
     def size(self) -> float:
         """Size l_sub: side of a square of the same area, or length of beams, m."""
         shape = self.body.shape
-        if isinstance(shape, Mesh):
-            return float(np.sqrt(shape.areas[self.chosen].sum()))
-        return float(shape.lengths[self.chosen].sum())
+        if isinstance(shape, Beam):
+            return float(shape.lengths[self.chosen].sum())
+        return float(np.sqrt(shape.areas[self.chosen].sum()))
 
     @cached_property
     def direction_per_length(self) -> float:
         """Search direction E / l_sub of a length, scaled, 1/m."""
         body = self.body
-        if isinstance(body.shape, Mesh):
-            return body.young / self.young / self.size
-        return self.direction_at_point / self.size
+        if isinstance(body.shape, Beam):
+            return self.direction_at_point / self.size
+        return body.young / self.young / self.size
+
+    def lengths_on_side(
+        self, chain: Indices, lengths: Array, places: Indices | slice = slice(None)
+    ) -> Array:
+        """Length for k that belongs to nodes at some places of a chain, (n,), m.
+
+        On a lattice that of the whole side of the part on which the chain lies, so that
+        k does not depend on where a joint ends; on other shapes these are the `lengths`
+        of the nodes along the chain, (n,), m.
+        """
+        shape = self.body.shape
+        if isinstance(shape, Lattice):
+            return shape.lengths_on_side(chain, self.nodes)[places]
+        return lengths
+
+    def slenderness(self, chain: Indices, length: float) -> float:
+        """Length of a side over the depth behind it, for the degree of a macro basis.
+
+        The side is the chain, of a length, m, or of a lattice the whole side of the
+        part on which the chain lies.
+        """
+        shape = self.body.shape
+        if isinstance(shape, Lattice):
+            return shape.slenderness(chain, self.nodes)
+        return float((length / self.size) ** 2)
 
     @cached_property
     def direction_at_point(self) -> float:
@@ -110,7 +140,10 @@ class ShapePart:
         shape = self.body.shape
         if isinstance(shape, Mesh):
             return mesh_stiffness(self._basis, self.nodes, self._elastic)
-        whole = shape.stiffness(self.body.young / self.young, self.chosen)
+        if isinstance(shape, Lattice):
+            whole = shape.stiffness(self._elastic, self.chosen)
+        else:
+            whole = shape.stiffness(self.body.young / self.young, self.chosen)
         dofs = np.add.outer(self.n_axes * self.nodes, np.arange(self.n_axes)).ravel()
         return sparse.csr_array(whole[dofs][:, dofs])
 
@@ -154,6 +187,16 @@ class ShapePart:
             return None
         return PartForce(np.concatenate(patterns, axis=2), np.concatenate(courses))
 
+    def arranged(self, nodes: Indices) -> Indices:
+        """Nodes of the part, (n_nodes,), as they lie: of a lattice row by row.
+
+        Those of a lattice have the shape (n_rows, n_columns), others (n_nodes,).
+        """
+        shape = self.body.shape
+        if isinstance(shape, Lattice):
+            return nodes.reshape(-1, shape.columns_of(self.nodes))
+        return nodes
+
     @cached_property
     def elements(self) -> Indices:
         """Corners of the elements, as indices of the part's nodes, (n_elements, 4)."""
@@ -177,14 +220,26 @@ class ShapePart:
         shape = self.body.shape
         if isinstance(shape, Mesh):
             strains = mesh_strains(shape, self.chosen, self.nodes)
-            elastic = self._elastic
         else:
-            dofs = np.add.outer(2 * self.nodes, np.arange(2)).ravel()
-            strains = shape.strains(self.chosen)[:, dofs]
+            strains = shape.strains(self.chosen)[:, dofs_of(self.nodes)]
+        elastic = self._elastic
+        if isinstance(shape, Beam):
             # A beam has the stress of its axis, and half of 2 xy.
             elastic = np.diag([1.0, 1.0, 0.5]) * self.body.young / self.young
         blocks = sparse.kron(sparse.eye_array(len(self.chosen)), elastic)
         return sparse.csr_array(blocks @ strains)
+
+    @cached_property
+    def outline(self) -> SchurComplement | None:
+        """Stiffness of a lattice condensed onto its outline; None of other shapes.
+
+        Bricks of one shape differ in which of their sides are in contact.
+        """
+        shape = self.body.shape
+        if not isinstance(shape, Lattice):
+            return None
+        outer = np.searchsorted(self.nodes, shape.outline(self.chosen))
+        return SchurComplement(sparse.csc_array(self.stiffness), dofs_of(outer))
 
     def stiffness_in(self, frames: Array) -> sparse.csc_array:
         """Stiffness in the directions at each node, (n_nodes n_axes, n_nodes n_axes).

@@ -15,16 +15,19 @@ from solver.discrete.condensed_part import (
     Trace,
     numbered,
 )
+from solver.discrete.loose_bodies import LooseBodiesError
+from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.bodies import Bodies
-from solver.discrete.plane.body import Body, Held
+from solver.discrete.plane.body import Body, Held, Load
 from solver.discrete.plane.body_parts import ShapePart
 from solver.discrete.plane.cut_shapes import CutShape
+from solver.discrete.plane.joint import Joint
 from solver.discrete.plane.joint_laws import JOINT_SIDES
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
-from solver.discrete.plane.meshes import Mesh
+from solver.discrete.plane.lattice import Lattice
 from solver.discrete.plane.shared_operators import PartNodes, SharedOperators
 from solver.discrete.scales import Scales
-from solver.refusal import RefusedError, Words
+from solver.refusal import Words
 
 FEW = 8
 """Number of components of nodes on which a load acts, up to which each is a pattern."""
@@ -53,7 +56,8 @@ class CutBodies:
         All parts in the axes of their shapes.
     parts
         Parts, body by body. Their rows are by ("above", piece), ("below", piece),
-        ("first", body, seam), ("second", body, seam) and ("held", number).
+        ("first", body, seam), ("second", body, seam), ("held", number) and ("spring",
+        number).
     """
 
     def __init__(self, structure: Bodies) -> None:
@@ -62,18 +66,19 @@ class CutBodies:
         self.young = max(_modulus(body) for body in structure.bodies)
         self.scales = Scales(self.length, self.young * self.length, structure.duration)
         bodies = structure.bodies
-        shapes = dict[tuple[int, int], CutShape]()
+        shapes = dict[Hashable, CutShape]()
         self.cuts = list[CutShape]()
         for body in bodies:
-            key = id(body.shape), body.substructures
+            key = body.cut_key
             if key not in shapes:
-                shapes[key] = CutShape(body.shape, body.substructures)
+                shapes[key] = CutShape(body.shape, body.substructures, body.parts)
             self.cuts.append(shapes[key])
         self.frames = NodeFrames(
             structure.rotations,
             structure.first_nodes,
             structure.pairs,
             structure.held,
+            structure.springs,
         )
         self.joint_names = [joint.name for joint in structure.joints]
         self.pieces = pieces_of(
@@ -91,24 +96,35 @@ class CutBodies:
         self._trace_pieces()
         self._trace_seams()
         self._trace_held()
+        self._trace_springs()
         self._operators = SharedOperators(self._own_frames)
         self.parts = list(self._parts())
 
     @cached_property
     def is_mesh(self) -> Flags:
-        """Mask of bodies that are meshes, not lines of beams, (n_bodies,)."""
+        """Mask of bodies that are no lines of beams, (n_bodies,)."""
         bodies = self.structure.bodies
-        return np.array([isinstance(body.shape, Mesh) for body in bodies])
+        return np.array([not isinstance(body.shape, Beam) for body in bodies])
+
+    @cached_property
+    def depths(self) -> Array | None:
+        """Height of each body, (n_bodies,), m, where all are lattices; else None."""
+        heights = list[float]()
+        for body in self.structure.bodies:
+            if not isinstance(body.shape, Lattice):
+                return None
+            heights.append(body.shape.rows * body.shape.height)
+        return np.array(heights)
 
     @cached_property
     def moduli(self) -> Array:
-        """Young's modulus of each mesh, E A of each beam, (n_bodies,), scaled."""
+        """Young's modulus of each body, E A of each beam, (n_bodies,), scaled."""
         values = []
         for body in self.structure.bodies:
-            if isinstance(body.shape, Mesh):
-                values.append(body.young / self.young)
-            else:
+            if isinstance(body.shape, Beam):
                 values.append(body.young * body.shape.area / self.young)
+            else:
+                values.append(body.young / self.young)
         return np.array(values)
 
     @cached_property
@@ -156,7 +172,7 @@ class CutBodies:
         found = dict[Hashable, list[ShapePart]]()
         parts = []
         for body, cut in zip(self.structure.bodies, self.cuts, strict=True):
-            key = id(body.shape), body.substructures, body.young, body.poisson
+            key = body.cut_key, body.young, body.poisson
             if key not in found:
                 found[key] = [
                     ShapePart(
@@ -189,14 +205,37 @@ class CutBodies:
             sides = zip(JOINT_SIDES, joint.sides, piece.parts, strict=False)
             for name, (_, nodes), owner in sides:
                 own = self.shape_parts[owner]
+                has_macro = self.has_macro(joint)
                 # Pieces of joints that are alike share their arrays.
-                key = id(own), kinds[piece.joint], name, id(piece.weights)
+                key = (
+                    id(own),
+                    kinds[piece.joint],
+                    name,
+                    id(piece.weights),
+                    has_macro,
+                    joint.strength is None,
+                )
                 if key not in known:
-                    dofs = self._dofs(owner, nodes[piece.places], np.arange(2))
-                    k = own.direction_per_length * piece.weights
-                    direction = np.repeat(k[:, None], 2, axis=1)
-                    known[key] = Trace(dofs, direction, joint.below is not None)
+                    # Where the pressure is known nothing moves across the joint.
+                    axes = np.arange(2)
+                    if joint.strength is not None:
+                        axes = np.array([joint.along])
+                    dofs = self._dofs(owner, nodes[piece.places], axes)
+                    lengths = own.lengths_on_side(nodes, piece.weights, piece.places)
+                    k = own.direction_per_length * lengths
+                    direction = np.repeat(k[:, None], len(axes), axis=1)
+                    known[key] = Trace(dofs, direction, has_macro)
                 self._traces[owner][name, number] = known[key]
+
+    def has_macro(self, joint: Joint) -> bool:
+        """Check whether macro forces balance on a joint.
+
+        They do between bodies, but not between those of one group.
+        """
+        groups = self.structure.groups
+        if joint.below is None or groups is None:
+            return joint.below is not None
+        return bool(groups[joint.above] != groups[joint.below])
 
     def _trace_seams(self) -> None:
         """Add the rows of both sides of the cuts inside bodies."""
@@ -207,8 +246,9 @@ class CutBodies:
                     own = self.shape_parts[owner]
                     dofs = self._dofs(owner, seam.nodes, np.arange(own.n_axes))
                     if own.n_axes == 2:
+                        lengths = own.lengths_on_side(seam.nodes, seam.weights)
                         k = np.repeat(
-                            own.direction_per_length * seam.weights[:, None], 2, axis=1
+                            own.direction_per_length * lengths[:, None], 2, axis=1
                         )
                     else:
                         k = np.array(
@@ -226,6 +266,7 @@ class CutBodies:
         """Add the rows of prescribed displacements, in every part with the node."""
         for number, held in enumerate(self.structure.held):
             weights = self._weights_held(held)
+            shape = self.structure.bodies[held.body].shape
             for part in range(self.structure.bodies[held.body].substructures):
                 owner = self.owner(held.body, part)
                 own = self.shape_parts[owner]
@@ -235,10 +276,24 @@ class CutBodies:
                 nodes = held.nodes[is_own]
                 axes, _ = self.axes_held(held, nodes)
                 dofs = self._dofs(owner, nodes, axes[:, None])
-                k = own.direction_per_length * weights[is_own, None]
+                lengths = weights[is_own]
+                if shape.edges_of(nodes) is not None:
+                    lengths = own.lengths_on_side(nodes, lengths)
+                k = own.direction_per_length * lengths[:, None]
                 if held.axis == 2:
                     k = np.full_like(k, own.direction_of_turn)
                 self._traces[owner]["held", number] = Trace(dofs, k, False)
+
+    def _trace_springs(self) -> None:
+        """Add the rows of nodes under springs, in the first part with each."""
+        for number, spring in enumerate(self.structure.springs):
+            node = np.array([spring.node])
+            owner = self.owner(spring.body, 0)
+            while not self.shape_parts[owner].has(node).all():
+                owner += 1
+            k = self.shape_parts[owner].direction_per_length * spring.length
+            dofs = self._dofs(owner, node, np.arange(2))
+            self._traces[owner]["spring", number] = Trace(dofs, np.full((1, 2), k), False)
 
     def axes_held(self, held: Held, nodes: Indices) -> tuple[Indices, Array]:
         """Degree of freedom of each node that is held, and its sign, (n,) both."""
@@ -261,7 +316,7 @@ class CutBodies:
             body = self._body_of_parts[owner]
             of_body = self.structure.bodies[body]
             if not self._traces[owner]:
-                raise RefusedError(
+                raise LooseBodiesError(
                     f"Bodies.bodies[{body}]",
                     Words(f"{of_body} without a joint or hold"),
                     "bodies that something holds",
@@ -273,7 +328,7 @@ class CutBodies:
             yield CondensedPart(
                 mesh=mesh,
                 operator=self._operators.of(mesh, on_nodes, list(traces.values())),
-                nodes=on_nodes.nodes,
+                nodes=mesh.arranged(on_nodes.nodes),
                 body=body,
                 traces=traces,
                 first_rows=first_rows,
@@ -333,11 +388,18 @@ class CutBodies:
         of_parts = zip(nodes, keys, frames, forces, strict=True)
         return [PartNodes(*of_part) for of_part in of_parts]
 
+    def _owners_of(self, load: Load) -> list[int]:
+        """Indices of the parts of a loaded body; first those with all loaded nodes."""
+        count = self.structure.bodies[load.body].substructures
+        owners = [self.owner(load.body, part) for part in range(count)]
+        owners.sort(key=lambda owner: not self.shape_parts[owner].has(load.nodes).all())
+        return owners
+
     def _loads(self) -> Mapping[int, Sequence[PartForce]]:
         """Forces of the loads on the nodes of parts, N.
 
         Patterns have the shape (n_nodes, 2, n_patterns). A node of several parts is
-        loaded in the first of them.
+        loaded in the one that has all loaded nodes, or else in the first.
         """
         found = dict[int, list[PartForce]]()
         for load in self.structure.loads:
@@ -346,8 +408,7 @@ class CutBodies:
             patterns, courses = _separated(load.force.reshape(2 * len(load.nodes), -1))
             on_nodes = patterns.reshape(len(load.nodes), 2, -1)
             taken = np.zeros(len(load.nodes), dtype=bool)
-            for part in range(self.structure.bodies[load.body].substructures):
-                owner = self.owner(load.body, part)
+            for owner in self._owners_of(load):
                 own = self.shape_parts[owner]
                 is_own = own.has(load.nodes) & ~taken
                 taken |= is_own
@@ -370,6 +431,6 @@ def _separated(force: Array) -> tuple[Array, Array]:
 
 def _modulus(body: Body) -> float:
     """Young's modulus, or E A / l of beams for a metre of thickness, Pa."""
-    if isinstance(body.shape, Mesh):
-        return body.young
-    return body.young * body.shape.area / body.shape.size
+    if isinstance(body.shape, Beam):
+        return body.young * body.shape.area / body.shape.size
+    return body.young

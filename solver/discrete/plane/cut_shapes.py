@@ -34,7 +34,7 @@ class Seam(NamedTuple):
 
 
 class CutShape:
-    """A shape cut into parts by bisection of the centres of its elements.
+    """A shape cut into parts: as is given, or by bisection of its elements' centres.
 
     Attributes
     ----------
@@ -46,14 +46,12 @@ class CutShape:
         Where parts are glued.
     """
 
-    def __init__(self, shape: Shape, count: int) -> None:
-        places = shape.centres
-        if isinstance(shape, Beam):
-            # A line may wind back beside itself, and is cut along itself.
-            places = shape.laid_out
-        self.labels = bisected(places, count)
-        if isinstance(shape, Mesh) and count > 1:
-            self.labels = in_one_piece(shape, self.labels)
+    def __init__(
+        self, shape: Shape, count: int, labels: Indices | None = None
+    ) -> None:
+        if labels is None:
+            labels = _labels_of(shape, count)
+        self.labels = labels
         if count == 1:
             # Every node belongs to an element.
             self.elements = [np.arange(len(self.labels))]
@@ -64,6 +62,19 @@ class CutShape:
         self.elements = [np.flatnonzero(self.labels == part) for part in numbers]
         self.nodes = [np.unique(shape.element_nodes[some]) for some in self.elements]
         self.seams = _seams_of(shape, self.labels)
+
+
+def _labels_of(shape: Shape, count: int) -> Indices:
+    """Index of the part of each element, (n_elements,), for a number of parts."""
+    if count == 1:
+        return np.zeros(len(shape.centres), dtype=np.intp)
+    if isinstance(shape, Beam):
+        # A line may wind back beside itself, and is cut along itself.
+        return bisected(shape.laid_out, count)
+    labels = bisected(shape.centres, count)
+    if isinstance(shape, Mesh):
+        return in_one_piece(shape, labels)
+    return labels
 
 
 def bisected(centres: Array, count: int) -> Indices:

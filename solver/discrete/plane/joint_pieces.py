@@ -11,7 +11,8 @@ from itertools import pairwise
 import numpy as np
 
 from solver.arrays import Array, Flags, Indices
-from solver.discrete.plane.body import Body, Held, Joint
+from solver.discrete.plane.body import Body, Held, NodeSpring
+from solver.discrete.plane.joint import Joint
 from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint_laws import JointPiece
 from solver.discrete.plane.node_pairs import NodePairs
@@ -34,9 +35,9 @@ def snapped(vectors: Array) -> Array:
 class NodeFrames:
     """Directions of the degrees of freedom of the nodes of all bodies.
 
-    Nodes of a joint have its tangent and normal, held ones the global axes, others the
-    axes of their body. Nodes of all bodies follow each other. `rotations` are those of
-    the bodies, (n_bodies, 2, 2).
+    Nodes of a joint have its tangent and normal, held ones the global axes, as have
+    those under a spring, others the axes of their body. Nodes of all bodies follow each
+    other. `rotations` are those of the bodies, (n_bodies, 2, 2).
 
     Attributes
     ----------
@@ -48,9 +49,11 @@ class NodeFrames:
     first_pairs
         Index of the first pair of each joint, (n_joints + 1,).
     has_pair
-        Which pairs of the joints there are, (n_pairs,). None where directions differ,
-        and where both sides are held across the joint, so that any pressing force would
-        be a solution.
+        Which pairs of the joints there are, (n_pairs,). None where the joint has none
+        by itself, where directions differ, and where `is_held`.
+    is_held
+        Where both sides are held across the joint, so that any pressing force would be
+        a solution, (n_pairs,).
     """
 
     def __init__(
@@ -59,6 +62,7 @@ class NodeFrames:
         first_nodes: Indices,
         pairs: NodePairs,
         held: Sequence[Held],
+        springs: Sequence[NodeSpring] = (),
     ) -> None:
         self.first_nodes = first_nodes
         sizes = np.diff(first_nodes)
@@ -69,21 +73,31 @@ class NodeFrames:
         for each in held:
             if each.axis < 2:
                 self._held[first_nodes[each.body] + each.nodes, each.axis] = True
+        # Nodes with the global axes, whatever their joint.
+        self._global = self._held.copy()
+        for spring in springs:
+            self._global[first_nodes[spring.body] + spring.node] = True
         # Nodes with the directions of a joint, and those of which joints disagree.
         self._of_joint = np.zeros(len(self.frames), dtype=bool)
         self._unlike = np.zeros(len(self.frames), dtype=bool)
         normals = snapped(pairs.normals)
         has_below = pairs.below >= 0
-        nodes = np.concatenate([pairs.above, pairs.below[has_below]])
-        self._turn(nodes, np.concatenate([normals, normals[has_below]]))
+        wanted = np.stack([snapped(pairs.tangents), normals], axis=1)
+        # Of upright joints of rectangles they are x and y, in this order.
+        wanted[pairs.along == 1] = np.eye(2)
+        chosen = pairs.is_paired
+        below = chosen & has_below
+        nodes = np.concatenate([pairs.above[chosen], pairs.below[below]])
+        self._turn(nodes, np.concatenate([wanted[chosen], wanted[below]]))
         self._hold()
         self.first_pairs = pairs.first
-        self.has_pair = self._pairs_there(pairs.above, pairs.below, normals)
+        self.is_held = self._held_across(pairs.above, pairs.below, normals)
+        self.is_held &= pairs.is_paired & ~pairs.is_known
+        differs = self._unlike[pairs.above] | (self._unlike[pairs.below] & has_below)
+        self.has_pair = pairs.is_paired & ~differs & ~self.is_held
 
-    def _turn(self, nodes: Indices, normals: Array) -> None:
-        """Turn frames of nodes, (n,), to the normals, (n, 2), of their first joint."""
-        tangents = np.stack([normals[:, 1], -normals[:, 0]], axis=1)
-        wanted = np.stack([tangents, normals], axis=1)
+    def _turn(self, nodes: Indices, wanted: Array) -> None:
+        """Turn frames of nodes, (n,), as their first joint wants it, (n, 2, 2)."""
         # The last write wins.
         self.frames[nodes[::-1]] = wanted[::-1]
         differs = np.abs(self.frames[nodes] - wanted).max(axis=(1, 2)) > ALIKE
@@ -91,16 +105,16 @@ class NodeFrames:
         self._of_joint[nodes] = True
 
     def _hold(self) -> None:
-        """Turn the frames of held nodes back to the global axes."""
-        held = np.flatnonzero(self._held.any(axis=1))
+        """Turn the frames of nodes that are held or pulled back to the global axes."""
+        held = np.flatnonzero(self._global.any(axis=1))
         is_axis = np.abs(self.frames[held]).max(axis=1) == 1.0
-        is_skew = (self._held[held] & ~is_axis).any(axis=1)
+        is_skew = (self._global[held] & ~is_axis).any(axis=1)
         self._unlike[held] |= is_skew & self._of_joint[held]
         turned_back = held[is_skew | self._unlike[held]]
         self.frames[turned_back] = np.eye(2)
 
-    def _pairs_there(self, above: Indices, below: Indices, normals: Array) -> Flags:
-        """Mask of the pairs, (n,), that are kept, of nodes above and below, (n,) both.
+    def _held_across(self, above: Indices, below: Indices, normals: Array) -> Flags:
+        """Mask of pairs, (n,), of which both nodes, (n,) each, are held across.
 
         Normals are (n, 2); the node below is -1 on a support.
         """
@@ -108,13 +122,12 @@ class NodeFrames:
         across = np.abs(normals) > 0.0
         held_above = (self._held[above] & across).any(axis=1)
         held_below = (self._held[below] & across).any(axis=1) | ~has_below
-        differs = self._unlike[above] | (self._unlike[below] & has_below)
-        return np.asarray(~differs & ~(held_above & held_below))
+        return np.asarray(held_above & held_below)
 
     @property
     def is_turned(self) -> Flags:
         """Mask of nodes whose directions may differ from their body's, (n_nodes,)."""
-        return self._of_joint | self._held.any(axis=1)
+        return self._of_joint | self._global.any(axis=1)
 
     def of_body(self, number: int) -> Array:
         """Directions at the nodes of a body, (n, 2, 2)."""
@@ -151,14 +164,16 @@ def pieces_of(
     first_parts = np.cumsum([0, *counts]).tolist()
     ends = frames.first_pairs.tolist()
     flags = frames.has_pair.tobytes()
+    held = frames.is_held.tobytes()
     for number, joint in enumerate(joints):
         own = slice(ends[number], ends[number + 1])
-        key = kinds[number], flags[own]
+        key = kinds[number], flags[own], held[own], joint.along
         if key not in known:
             has_pair = frames.has_pair[own]
+            is_held = frames.is_held[own]
             whole = _pieces_of_joint(bodies, number, joint, cuts)
             known[key] = [
-                _paired(piece, has_pair[piece.places])
+                _paired(piece, has_pair[piece.places], is_held[piece.places])
                 for piece in whole
                 if has_pair[piece.places].any()
             ]
@@ -203,17 +218,20 @@ def _pieces_of_joint(
         weights[1:] += shares[first:last, 1]
         parts = int(above[first]), int(below[first])
         places = np.arange(first, last + 1)
-        pieces.append(JointPiece(number, parts, places, weights))
+        pieces.append(JointPiece(number, parts, places, weights, joint.along))
     return pieces
 
 
-def _paired(piece: JointPiece, has_pair: Flags) -> JointPiece:
-    """A piece without some pairs; their lengths go to the nearest other pairs."""
+def _paired(piece: JointPiece, has_pair: Flags, is_held: Flags) -> JointPiece:
+    """A piece without some pairs, (n,): their lengths go to the nearest other pairs.
+
+    But not the lengths of those where both sides are held, which nothing loads.
+    """
     if has_pair.all():
         return piece
     kept = np.flatnonzero(has_pair)
     places = np.arange(len(has_pair))
     nearest = np.abs(places[:, None] - kept).argmin(axis=1)
     weights = np.zeros(len(kept))
-    np.add.at(weights, nearest, piece.weights)
+    np.add.at(weights, nearest, np.where(is_held, 0.0, piece.weights))
     return piece._replace(places=piece.places[kept], weights=weights)

@@ -11,7 +11,7 @@ from solver.discrete.elements import legendre_basis
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.joint_laws import JointPairs, Surface, contact_of
 from solver.discrete.plane.node_pairs import along_joints
-from solver.laws import Contact, NodalStiffness
+from solver.laws import BodyStiffness, Contact, NodalStiffness
 from solver.laws.stiffness import of_whole_mesh
 
 CUBIC = 3
@@ -35,22 +35,32 @@ def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
         gap=gap[nodes],
         friction=mu[nodes],
     )
-    beside = _stiffness_beside(cut, numbers, pairs)
+    strengths = [joint.strength for joint in joints if joint.strength is not None]
+    if strengths:
+        strength = np.concatenate(strengths)[nodes] / cut.scales.force
+        surface = surface._replace(known=strength * pairs.weights[:, None])
+    if joints[0].is_image:
+        law = surface.law.of_one_side()
+        surface = surface._replace(law=law, slip_ratio=2.0)
+    if cut.depths is None:
+        beside = _stiffness_beside(cut, numbers, pairs)
+    else:
+        beside = _stiffness_of_lattices(cut, cut.depths, numbers, pairs)
     return contact_of(pairs, surface, cut.scales, beside, _macro_bases(cut, pairs))
 
 
 def _positions(cut: CutBodies, numbers: Sequence[int]) -> Array:
-    """Distance of the nodes of joints from the first node of each, (n_nodes,), m."""
+    """Positions of the nodes of joints along each, from its start, (n_nodes,), m."""
     structure = cut.structure
     known = dict[int, Array]()
     found = []
     for number in numbers:
+        joint = structure.joints[number]
         kind = structure.joint_kinds[number]
         if kind not in known:
-            joint = structure.joints[number]
             nodes = structure.bodies[joint.above].shape.nodes
             known[kind] = _distances(nodes[joint.nodes])
-        found.append(known[kind])
+        found.append(joint.start + known[kind])
     return np.concatenate(found)
 
 
@@ -91,6 +101,22 @@ def _stiffness_beside(
     return NodalStiffness(
         whole, local, squeezed, _resting_lines(cut)[numbers][of_joint]
     )
+
+
+def _stiffness_of_lattices(
+    cut: CutBodies, depths: Array, numbers: Sequence[int], pairs: JointPairs
+) -> BodyStiffness:
+    """Moduli and depth of lattices at joints, for their search direction.
+
+    `depths` are those of all bodies, (n_bodies,), m.
+    """
+    joints = [cut.structure.joints[number] for number in numbers]
+    above = np.array([joint.above for joint in joints])[pairs.joints]
+    moduli: Array = np.full(len(above), np.inf)
+    if pairs.tangent.below is not None:
+        below = np.array([joint.below for joint in joints], dtype=np.intp)
+        moduli = cut.moduli[below[pairs.joints]]
+    return BodyStiffness(cut.moduli[above], moduli, depths[above])
 
 
 def _resting_lines(cut: CutBodies) -> Indices:
@@ -136,15 +162,17 @@ def _whole_joints(
 def _macro_bases(cut: CutBodies, pairs: JointPairs) -> list[Array]:
     """Macro bases of pieces in one component, (n_pairs, n_macro) each.
 
-    Without columns on a support. A line between forces at its ends bends like a cubic.
+    Without columns where no macro forces balance. A line between forces at its ends
+    bends like a cubic.
     """
     joints = cut.structure.joints
     pieces = [cut.pieces[number] for number in pairs.pieces]
-    if pairs.tangent.below is None:
-        return [np.zeros((len(piece.places), 0)) for piece in pieces]
     known = dict[Hashable, Array]()
     bases = []
     for piece in pieces:
+        if not cut.has_macro(joints[piece.joint]):
+            bases.append(np.zeros((len(piece.places), 0)))
+            continue
         part = cut.shape_parts[piece.parts[0]]
         # Pieces of joints that are alike share their arrays.
         key = id(part), cut.structure.joint_kinds[piece.joint], id(piece.weights)
@@ -153,7 +181,7 @@ def _macro_bases(cut: CutBodies, pairs: JointPairs) -> list[Array]:
             nodes = cut.structure.bodies[joint.above].shape.nodes
             along = _distances(nodes[joint.nodes[piece.places]])
             reach = along[-1] or 1.0
-            slenderness = (piece.weights.sum() / part.size) ** 2
+            slenderness = part.slenderness(joint.nodes, piece.weights.sum())
             degree = cut.structure.macro_degree
             if not cut.is_mesh[joint.above]:
                 degree *= CUBIC

@@ -2,26 +2,40 @@
 
 from __future__ import annotations
 
+from functools import cache
+from typing import TYPE_CHECKING
+
 import numpy as np
-import skfem
 from scipy import sparse
-from skfem.quadrature import get_quadrature
 
 from solver.arrays import Array, Indices
 from solver.discrete.elements import dofs_of
 from solver.discrete.plane.meshes import Mesh
 
-EXACT = {
-    3: get_quadrature(skfem.ElementTriP2.refdom, 2),
-    4: get_quadrature(skfem.ElementQuad2.refdom, 4),
-}
-"""Points and weights of the integration that is exact for the stiffness of elements
-with parallel edges, by their number of corners."""
+if TYPE_CHECKING:
+    import skfem
+
+
+@cache
+def _exact(corners: int) -> tuple[Array, Array]:
+    """Points and weights of the integration of elements with a number of corners.
+
+    Exact for the stiffness of elements with parallel edges.
+    """
+    import skfem
+    from skfem.quadrature import get_quadrature
+
+    if corners == 3:
+        quadrature = get_quadrature(skfem.ElementTriP2.refdom, 2)
+    else:
+        quadrature = get_quadrature(skfem.ElementQuad2.refdom, 4)
+    points, weights = quadrature
+    return points, weights
 
 
 def quadratic_basis(mesh: Mesh, elements: Indices) -> skfem.Basis:
     """Quadratic functions of some elements of a mesh, at points of integration."""
-    return _basis(mesh, elements, EXACT[mesh.elements.shape[1]])
+    return _basis(mesh, elements, _exact(mesh.elements.shape[1]))
 
 
 def mesh_stiffness(
@@ -90,6 +104,9 @@ def _basis(
     mesh: Mesh, elements: Indices, quadrature: tuple[Array, Array]
 ) -> skfem.Basis:
     """Quadratic functions of some elements at points with weights in the element."""
+    # Structures without meshes do not pay for the import.
+    import skfem
+
     kind = skfem.ElementTriP2
     if mesh.elements.shape[1] == 4:
         kind = skfem.ElementQuad2

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from scipy import sparse
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
 """Shares of a uniform force on an edge, at its ends and its middle between them."""
+HALVES = np.array([0.5, 0.5])
+"""The same on an edge whose displacement is linear."""
 FLAT = 1e-9
 """Smallest area of an element at any of its corners, over that of a square about it."""
 
@@ -173,19 +175,7 @@ class Mesh:
         Both ends of a plate are two chains, say. Nodes make none, [], if some of them
         belong to no chain.
         """
-        chains = []
-        first = 0
-        while first < len(nodes):
-            last = first + 3
-            while (
-                last < len(nodes) and self.edges_of(nodes[first : last + 2]) is not None
-            ):
-                last += 2
-            if self.edges_of(nodes[first:last]) is None:
-                return []
-            chains.append(nodes[first:last])
-            first = last
-        return chains
+        return chains_along(self, nodes, 2)
 
     @property
     def n_corners(self) -> int:
@@ -248,12 +238,8 @@ class Mesh:
         """Normals out of the elements along a chain, times `shares`, (n, 2), m."""
         edges = self.edges_of(chain)
         assert edges is not None
-        ends = self.nodes[chain[::2]]
-        along = np.diff(ends, axis=0)
-        inward = self.centres[self.elements_at(edges)] - ends[:-1]
-        is_left = along[:, 0] * inward[:, 1] - along[:, 1] * inward[:, 0] > 0.0
-        right = np.stack([along[:, 1], -along[:, 0]], axis=1)
-        normals = np.where(is_left[:, None], right, -right)
+        centres = self.centres[self.elements_at(edges)]
+        normals = normals_out(self.nodes[chain[::2]], centres)
         return on_nodes(normals, SIMPSON)
 
     @cached_property
@@ -293,6 +279,46 @@ class Mesh:
         places = first[is_one], second[is_one]
         links = sparse.coo_array((np.ones(len(places[0])), places), (size, size))
         return np.asarray(connected_components(links, directed=False)[1])
+
+
+class Shape(Protocol):
+    """A shape whose nodes make chains along edges."""
+
+    def edges_of(self, chain: Indices) -> Indices | None:
+        """Indices of the edges of a chain, (n_edges,); None if it is no chain."""
+
+
+def chains_along(shape: Shape, nodes: Indices, step: int) -> list[Indices]:
+    """Chains of edges, (n,) each, along consecutive nodes, (n_nodes,).
+
+    An edge takes `step` nodes further. [] if some nodes belong to no chain.
+    """
+    chains = []
+    first = 0
+    while first < len(nodes):
+        last = first + step + 1
+        while (
+            last < len(nodes) and shape.edges_of(nodes[first : last + step]) is not None
+        ):
+            last += step
+        if shape.edges_of(nodes[first:last]) is None:
+            return []
+        chains.append(nodes[first:last])
+        first = last
+    return chains
+
+
+def normals_out(ends: Array, centres: Array) -> Array:
+    """Normals out of elements, as long as their edges, (n_edges, 2), m.
+
+    Edges run from point to point, (n_edges + 1, 2), m; `centres` are those of the
+    elements beside them, (n_edges, 2), m.
+    """
+    along = np.diff(ends, axis=0)
+    inward = centres - ends[:-1]
+    is_left = along[:, 0] * inward[:, 1] - along[:, 1] * inward[:, 0] > 0.0
+    right = np.stack([along[:, 1], -along[:, 0]], axis=1)
+    return np.where(is_left[:, None], right, -right)
 
 
 def on_nodes(values: Array, shares: Array) -> Array:

@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array, Indices
-from solver.discrete.plane.body import Body, Joint
+from solver.arrays import Array, Flags, Indices
+from solver.discrete.plane.body import Body
+from solver.discrete.plane.joint import Joint
 
 
 class NodePairs(NamedTuple):
@@ -22,12 +23,22 @@ class NodePairs(NamedTuple):
         Nodes of each pair, (n_pairs,); that below is -1 on a support.
     normals
         Unit normals as they are given, (n_pairs, 2).
+    is_left_handed, along
+        Whether tangents are the normals turned counter-clockwise, and the component
+        along the joint where directions are x and y, (n_pairs,).
+    is_paired, is_known
+        Whether the joint has a pair there, and whether its strength is known,
+        (n_pairs,).
     """
 
     first: Indices
     above: Indices
     below: Indices
     normals: Array
+    is_left_handed: Flags
+    along: Indices
+    is_paired: Flags
+    is_known: Flags
 
     @classmethod
     def of(cls, joints: Sequence[Joint], first_nodes: Indices) -> NodePairs:
@@ -41,12 +52,31 @@ class NodePairs(NamedTuple):
         # There may be no joint at all.
         normals = [np.zeros((0, 2))]
         normals += [joint.normals for joint in joints]
+        left_handed = np.array([joint.is_left_handed for joint in joints], dtype=bool)
+        along = np.array([joint.along for joint in joints], dtype=np.intp)
+        is_known = [joint.strength is not None for joint in joints]
+        is_paired = np.ones(len(nodes_below), dtype=bool)
+        firsts = np.cumsum(sizes) - sizes
+        for first, joint in zip(firsts.tolist(), joints, strict=True):
+            if joint.paired is not None:
+                is_paired[first : first + len(joint.nodes)] = joint.paired
         return cls(
             first=np.cumsum([0, *sizes]),
             above=_nodes_of(above, first_nodes),
             below=nodes_below,
             normals=np.concatenate(normals),
+            is_left_handed=np.repeat(left_handed, sizes),
+            along=np.repeat(along, sizes),
+            is_paired=is_paired,
+            is_known=np.repeat(np.array(is_known, dtype=bool), sizes),
         )
+
+    @property
+    def tangents(self) -> Array:
+        """Unit tangents, (n_pairs, 2)."""
+        x, y = self.normals.T
+        signs = np.where(self.is_left_handed, -1.0, 1.0)
+        return np.stack([signs * y, -signs * x], axis=1)
 
     @property
     def joints(self) -> Indices:
@@ -60,7 +90,7 @@ def kinds_of(bodies: Sequence[Body], joints: Sequence[Joint]) -> list[int]:
     Joints of one kind are along equal chains of nodes of the same shapes, which are cut
     alike.
     """
-    of_bodies = [(id(body.shape), body.substructures) for body in bodies]
+    of_bodies = [body.cut_key for body in bodies]
     known = dict[Hashable, int]()
     kinds = []
     for joint in joints:

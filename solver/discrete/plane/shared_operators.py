@@ -85,7 +85,10 @@ class SharedOperators:
         )
         if alike not in self._operators:
             frames = self._frames[on_nodes.nodes]
-            condensed = self._condensed(part, frames, kept_by(traces))
+            kept = kept_by(traces)
+            condensed = self._condensed_outline(part, frames, kept)
+            if condensed is None:
+                condensed = self._condensed(part, frames, kept)
             self._operators[alike] = Operator(condensed, traces)
         self._operators[same] = self._operators[alike]
         return self._operators[alike]
@@ -119,6 +122,19 @@ class SharedOperators:
                 key, lambda: SchurComplement(part.stiffness_in(towards), kept)
             )
         return self._stiffnesses[alike].with_signs(signs)
+
+    def _condensed_outline(
+        self, part: ShapePart, frames: Array, kept: Indices
+    ) -> SchurComplement | None:
+        """Stiffness as of `_condensed`, from that of the outline; None without one.
+
+        There is none where directions are not the axes of the part.
+        """
+        if part.outline is None or np.any(frames != np.eye(2)):
+            return None
+        outline = part.outline
+        key = "outline", part.content, kept.tobytes()
+        return CACHE.get(key, lambda: SchurComplement(outline, kept))
 
 
 def _rounded(values: Array) -> Array:

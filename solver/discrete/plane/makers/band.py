@@ -12,7 +12,8 @@ import scipy
 from solver.arrays import Array, Indices
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.bodies import Bodies
-from solver.discrete.plane.body import Body, Held, Joint, Load
+from solver.discrete.plane.body import Body, Held, Load
+from solver.discrete.plane.joint import Joint
 from solver.discrete.probes import LoopFields, Probe, constant, mean_held, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Axes, Loop

@@ -10,7 +10,8 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.cache import CACHE
-from solver.discrete.plane.body import Body, Held, Joint, Load
+from solver.discrete.plane.body import Body, Held, Load
+from solver.discrete.plane.joint import Joint
 from solver.discrete.plane.makers.wires import (
     DOWN,
     TURN,

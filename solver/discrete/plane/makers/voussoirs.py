@@ -12,7 +12,8 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.cache import CACHE, content_of
 from solver.discrete.plane.bodies import Bodies
-from solver.discrete.plane.body import Body, Held, Joint, Load
+from solver.discrete.plane.body import Body, Held, Load
+from solver.discrete.plane.joint import Joint
 from solver.discrete.plane.meshes import SIMPSON, Mesh, on_nodes
 from solver.discrete.probes import mean_held, reaction
 from solver.discrete.problem import Problem
