@@ -71,7 +71,7 @@ class CutBodies:
         for body in bodies:
             key = body.cut_key
             if key not in shapes:
-                shapes[key] = CutShape(body.shape, body.substructures, body.parts)
+                shapes[key] = CutShape.of(body)
             self.cuts.append(shapes[key])
         self.frames = NodeFrames(
             structure.rotations,
@@ -334,16 +334,18 @@ class CutBodies:
                 first_rows=first_rows,
                 force=on_nodes.force,
                 frames=on_nodes.frames,
-                rotation=rotations[body],
+                rotation=rotations[body] if of_body.angle else None,
             )
 
     def _nodes_of_parts(self) -> list[PartNodes]:
         """Nodes, motions and forces of every part; equal parts are made together."""
         loads = self._loads()
         motions = self._motions()
+        is_axes = np.all(self.frames.frames == np.eye(2), axis=(1, 2))
         found = dict[int, PartNodes]()
         for owners in self._alike_in_force(loads):
-            of_parts = self._nodes_of_alike(owners, motions, loads.get(owners[0], []))
+            of_alike = loads.get(owners[0], [])
+            of_parts = self._nodes_of_alike(owners, motions, is_axes, of_alike)
             found.update(zip(owners, of_parts, strict=True))
         return [found[owner] for owner in range(len(self.shape_parts))]
 
@@ -366,23 +368,38 @@ class CutBodies:
         return list(alike.values())
 
     def _nodes_of_alike(
-        self, owners: Sequence[int], motions: Array, loads: Sequence[PartForce]
+        self,
+        owners: Sequence[int],
+        motions: Array,
+        is_axes: Flags,
+        loads: Sequence[PartForce],
     ) -> list[PartNodes]:
         """Nodes, motions and forces of equal parts, by their indices.
 
-        `motions` are those of all nodes, (n_nodes, N_AXES, 3), `loads` the forces on
-        the nodes of the parts, with patterns (n_nodes_of_part, 2, n_patterns), N.
+        `motions` are those of all nodes, (n_nodes, N_AXES, 3), `is_axes` tells where
+        they are along x and y, (n_nodes,), and `loads` are the forces on the nodes of
+        the parts, with patterns (n_nodes_of_part, 2, n_patterns), N.
         """
         own = self.shape_parts[owners[0]]
         bodies = [self._body_of_parts[owner] for owner in owners]
         nodes = np.add.outer(self.structure.first_nodes[bodies], own.nodes)
         keys = self._operators.turned(nodes)
+        force = own.forces(self.structure.bodies[bodies[0]].weight, loads)
+        unit = self.young * self.length
+        if own.n_axes == 2 and is_axes[nodes].all():
+            if force is not None:
+                size = len(force.courses)
+                patterns = force.patterns.reshape(-1, size) / unit
+                force = PartForce(patterns, force.courses)
+            # Parts that are alike have the very same force.
+            return [
+                PartNodes(numbers, key, None, force)
+                for numbers, key in zip(nodes, keys, strict=True)
+            ]
         frames = motions[nodes, : own.n_axes]
         forces: list[PartForce | None] = [None] * len(owners)
-        force = own.forces(self.structure.bodies[bodies[0]].weight, loads)
         if force is not None:
-            on_nodes = frames[..., :2] @ force.patterns
-            on_nodes /= self.young * self.length
+            on_nodes = frames[..., :2] @ force.patterns / unit
             turned = on_nodes.reshape(len(owners), -1, len(force.courses))
             forces = [PartForce(patterns, force.courses) for patterns in turned]
         of_parts = zip(nodes, keys, frames, forces, strict=True)

@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array, Indices
+from solver.cache import CACHE, content_of
 from solver.discrete.plane.beams import Beam
-from solver.discrete.plane.body import Shape
+from solver.discrete.plane.body import Body, Shape
 from solver.discrete.plane.meshes import Mesh
 
 
@@ -62,6 +63,24 @@ class CutShape:
         self.elements = [np.flatnonzero(self.labels == part) for part in numbers]
         self.nodes = [np.unique(shape.element_nodes[some]) for some in self.elements]
         self.seams = _seams_of(shape, self.labels)
+
+    @classmethod
+    def of(cls, body: Body) -> CutShape:
+        """How a body is cut, which no load and no friction changes."""
+        shape = body.shape
+        given = None
+        if body.parts is not None:
+            given = content_of(body.parts)
+        key = "cut", shape.content, body.substructures, given
+        return CACHE.get(key, lambda: cls(shape, body.substructures, body.parts))
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of labels, elements, nodes and seams, B."""
+        arrays = [self.labels, *self.elements, *self.nodes]
+        for seam in self.seams:
+            arrays += [seam.nodes, seam.positions, seam.weights]
+        return sum(each.nbytes for each in arrays)
 
 
 def _labels_of(shape: Shape, count: int) -> Indices:

@@ -57,6 +57,16 @@ class Lattice:
         """Key of the lattice: equal ones have equal keys."""
         return self.columns, self.rows, self.width, self.height
 
+    def content_of_part(self, elements: Indices) -> Hashable:
+        """Key of some elements, ascending, (n,), wherever they lie in the lattice."""
+        rows, columns = np.divmod(elements, self.columns)
+        rows -= rows.min()
+        columns -= columns.min()
+        size = int(columns.max()) + 1, int(rows.max()) + 1
+        if size[0] * size[1] == len(elements):
+            return size, self.width, self.height
+        return rows.tobytes(), columns.tobytes(), self.width, self.height
+
     @cached_property
     def grid(self) -> Indices:
         """Index of every node, shape (rows + 1, columns + 1), from below."""
@@ -210,9 +220,12 @@ class Lattice:
         `nodes` are those of the part, a rectangle, (n_nodes,): the chain may be shorter
         than its side.
         """
-        along, ends = self._side(chain, nodes)
-        length = self._lengths(chain)[0]
-        is_end = np.isin(along, ends)
+        is_upright = self._is_upright(chain)
+        length = self.height if is_upright else self.width
+        axis = 1 - int(is_upright)
+        along = self._places(chain)[axis]
+        own = self._places(nodes)[axis]
+        is_end = (along == own.min()) | (along == own.max())
         return np.where(is_end, 0.5 * length, length)
 
     def slenderness(self, chain: Indices, nodes: Indices) -> float:
@@ -223,19 +236,19 @@ class Lattice:
         rows, columns = self._places(nodes)
         along = self.width * np.ptp(columns)
         up = self.height * np.ptp(rows)
-        ratio = float(along / up)
-        return ratio if np.ptp(chain) < len(chain) else 1.0 / ratio
+        if self._is_upright(chain):
+            return float(up / along)
+        return float(along / up)
+
+    @staticmethod
+    def _is_upright(chain: Indices) -> bool:
+        """Check whether a chain runs along a column of nodes."""
+        return bool(abs(chain[1] - chain[0]) > 1)
 
     def columns_of(self, nodes: Indices) -> int:
         """Number of nodes along of a part, a rectangle of nodes, (n_nodes,)."""
         _, columns = self._places(nodes)
         return int(np.ptp(columns)) + 1
-
-    def _side(self, chain: Indices, nodes: Indices) -> tuple[Indices, Indices]:
-        """Places of a chain along itself, (n,), and of the ends of its side, (2,)."""
-        axis = int(np.ptp(chain) < len(chain))
-        own = self._places(nodes)[axis]
-        return self._places(chain)[axis], np.array([own.min(), own.max()])
 
     def stiffness(self, elastic: Array, elements: Indices) -> sparse.csr_array:
         """Stiffness of some elements, (2 n_nodes, 2 n_nodes), per unit of `elastic`.

@@ -32,14 +32,15 @@ class PartNodes(NamedTuple):
     turned
         Key of the directions of its degrees of freedom in the axes of its body.
     frames
-        Motions of its degrees of freedom along x and y, and turn, (n_nodes, n_axes, 3).
+        Motions of its degrees of freedom along x and y, and turn, (n_nodes, n_axes, 3);
+        None where they are along x and y.
     force
         Forces on these, (n_nodes n_axes,) in space, or None.
     """
 
     nodes: Indices
     turned: bytes
-    frames: Array
+    frames: Array | None
     force: PartForce | None
 
 
@@ -69,14 +70,14 @@ class SharedOperators:
         has_force = on_nodes.force is not None
         # Most parts that are alike have the very same traces.
         of_traces = [id(trace) for trace in traces]
-        same = id(part), on_nodes.turned, has_force, *of_traces
+        same = part.key, on_nodes.turned, has_force, *of_traces
         known = self._operators.get(same)
         if known is not None:
             return known
         dofs = np.concatenate([trace.dofs.ravel() for trace in traces])
         direction = np.concatenate([trace.direction.ravel() for trace in traces])
         alike = (
-            id(part),
+            part.key,
             dofs.tobytes(),
             _rounded(direction / direction.max()).tobytes(),
             on_nodes.turned,

@@ -144,21 +144,24 @@ def grouped(bricks: Sequence[Brick], size: tuple[int, int], count: int) -> Indic
 
 
 def joints_of(bricks: Sequence[Brick]) -> list[BrickJoint]:
-    """All joints of rectangles that do not overlap, also those on the support."""
+    """All joints of rectangles that do not overlap, also those on the support.
+
+    By the rectangle above: that on the support, lying ones, then upright ones.
+    """
     lying = np.array(bricks).T
-    upright = lying[[1, 0, 3, 2]]
-    joints = []
-    for above, brick in enumerate(bricks):
-        if brick.y == 0:
-            joints.append(BrickJoint(above, None, brick.x, brick.x + brick.columns))
-        # Upright joints are lying ones with both axes exchanged.
-        for is_upright, (x, y, columns, rows) in enumerate((lying, upright)):
-            ends = x + columns
-            for below in np.flatnonzero(y + rows == y[above]).tolist():
-                first = int(max(x[above], x[below]))
-                last = int(min(ends[above], ends[below]))
-                if last > first:
-                    joints.append(
-                        BrickJoint(above, below, first, last, bool(is_upright))
-                    )
-    return joints
+    joints = [
+        BrickJoint(above, None, brick.x, brick.x + brick.columns)
+        for above, brick in enumerate(bricks)
+        if brick.y == 0
+    ]
+    # Upright joints are lying ones with both axes exchanged.
+    for is_upright, (x, y, columns, rows) in enumerate((lying, lying[[1, 0, 3, 2]])):
+        above, below = np.nonzero(y[:, None] == y + rows)
+        ends = x + columns
+        first = np.maximum(x[above], x[below])
+        last = np.minimum(ends[above], ends[below])
+        touches = last > first
+        columns_of = [each[touches].tolist() for each in (above, below, first, last)]
+        for of_joint in zip(*columns_of, strict=True):
+            joints.append(BrickJoint(*of_joint, bool(is_upright)))
+    return sorted(joints, key=lambda joint: joint.above)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
+from functools import cache, partial
 
 import numpy as np
 
@@ -10,7 +11,6 @@ from solver.arrays import Array, Indices
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, NodeSpring
 from solver.discrete.plane.lattice import Lattice
-from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.plane.rectangles.stack_joints import StackJoints
 from solver.discrete.plane.rectangles.stack_sides import StackSides
@@ -20,7 +20,8 @@ from solver.discrete.substructure import substructure_sizes
 def bodies_of(stack: Stack) -> Bodies:
     """Bodies, joints, holds and loads of a stack."""
     shapes = _shapes_of(stack)
-    ends = [_ends_of(stack, brick) for brick in stack.rectangles]
+    of_size = cache(partial(_ends_of, stack))
+    ends = [of_size(brick.columns, brick.rows) for brick in stack.rectangles]
     joints = StackJoints.of(stack, shapes)
     sides = StackSides(stack, shapes, joints.lines, ends)
     springs = []
@@ -69,14 +70,14 @@ def ends_along(elements: int, cuts: int, spans: Sequence[int]) -> Indices:
     return np.union1d(np.cumsum(substructure_sizes(elements, cuts)), spans)
 
 
-def _ends_of(stack: Stack, brick: Brick) -> tuple[list[int], list[int]]:
+def _ends_of(stack: Stack, columns: int, rows: int) -> tuple[list[int], list[int]]:
     """Ends of the parts of a body along and up, in elements from its corner."""
-    spans = [brick.columns]
+    spans = [columns]
     if stack.is_pile:
         spans = [each.columns for each in stack.rectangles]
     along = ends_along(max(spans), stack.substructures[0], spans)
-    up = np.cumsum(substructure_sizes(brick.rows, stack.substructures[1]))
-    return [0, *along[along <= brick.columns].tolist()], [0, *up.tolist()]
+    up = np.cumsum(substructure_sizes(rows, stack.substructures[1]))
+    return [0, *along[along <= columns].tolist()], [0, *up.tolist()]
 
 
 def _labels_of(ends: tuple[list[int], list[int]]) -> Indices:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array, Flags, Indices
+from solver.arrays import Array, Indices
 from solver.discrete.elements import EDGE_MASS
 from solver.discrete.plane.body import Held, Load
 from solver.discrete.plane.lattice import Lattice
@@ -69,31 +69,24 @@ class StackSides:
             span
             for side in SIDES
             for body in range(len(self.shapes))
-            for span in self._spans_of(body, side, covered)
+            for span in self._spans_of(body, side, covered.get((body, side), []))
         ]
 
-    def _covered(self) -> dict[tuple[int, str], Flags]:
-        """Masks of elements under joints, (elements,), by body and side."""
-        covered = dict[tuple[int, str], Flags]()
+    def _covered(self) -> dict[tuple[int, str], list[tuple[int, int]]]:
+        """Ends of what lies under joints, in elements, by body and side."""
+        covered = dict[tuple[int, str], list[tuple[int, int]]]()
         for line in self.lines:
             for body, side in line.sides:
                 brick = self.stack.rectangles[body]
                 corner = brick.y if line.is_upright else brick.x
-                none = np.zeros(self._elements(body, side), dtype=bool)
-                elements = covered.setdefault((body, side), none)
-                elements[line.first - corner : line.last - corner] = True
+                ends = line.first - corner, line.last - corner
+                covered.setdefault((body, side), []).append(ends)
         return covered
 
-    def _elements(self, body: int, side: str) -> int:
-        """Number of elements along a side of a body."""
-        if side in ("left", "right"):
-            return self.shapes[body].rows
-        return self.shapes[body].columns
-
     def _spans_of(
-        self, body: int, side: str, covered: Mapping[tuple[int, str], Flags]
+        self, body: int, side: str, covered: Sequence[tuple[int, int]]
     ) -> Iterator[Span]:
-        """Parts of a side of a body that nothing covers."""
+        """Parts of a side of a body between those that are covered."""
         brick = self.stack.rectangles[body]
         columns, _ = self.stack.grid
         is_end = {
@@ -102,14 +95,14 @@ class StackSides:
         }
         if not is_end.get(side, True):
             return
-        elements = covered.get((body, side))
-        if elements is None:
-            yield Span(body, side, 0, self._elements(body, side))
-        elif not elements.all():
-            # Spans lie between covered elements; beyond the ends a side is covered.
-            changes = np.diff(elements, prepend=True, append=True)
-            for first, last in np.flatnonzero(changes).reshape(-1, 2).tolist():
-                yield Span(body, side, first, last)
+        size = brick.columns
+        if side in is_end:
+            size = brick.rows
+        begin = 0
+        for first, last in [*sorted(covered), (size, size)]:
+            if first > begin:
+                yield Span(body, side, begin, first)
+            begin = last
 
     def _is_outermost(self, span: Span) -> bool:
         """Check whether no span of an outer side lies farther out than this one.
