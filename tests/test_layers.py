@@ -235,17 +235,13 @@ def test_the_parts_of_the_method_stand_below_what_puts_them_to_work():
             assert not used & ABOVE, name
 
 
-def test_rectangles_and_bodies_of_any_shape_share_laws_of_joints_alone():
+def test_bodies_of_any_shape_know_none_of_their_makers():
     plane = "solver.discrete.plane"
     inside = {name for name in SOLVER if name.startswith(f"{plane}.")}
-    rectangles = {name for name in inside if name.startswith(f"{plane}.rectangles")}
-    assert rectangles
-    for name in inside:
-        others = imports(name) & inside
-        if name in rectangles:
-            assert others - rectangles <= {f"{plane}.joint_laws"}, name
-        else:
-            assert not others & rectangles, name
+    makers = {name for name in inside if name.split(".")[3] == "rectangles"}
+    assert makers
+    for name in inside - makers:
+        assert not imports(name) & makers, name
 
 
 def test_scenes_are_reached_by_the_catalogue_alone():

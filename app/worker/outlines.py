@@ -67,7 +67,7 @@ def outlines_of_shapes(problem: Problem, structure: Bodies) -> list[Outline]:
     outlines = []
     for number, (drawing, ring) in sorted(longest.items()):
         kept = ring[thinned(len(ring), limit)]
-        nodes = inside.grids[number]
+        nodes = inside.grids[number].ravel()
         order = np.argsort(nodes)
         numbers = order[np.searchsorted(nodes[order], drawing.numbers[kept])]
         matrix, given = inside.of_part(number, numbers)

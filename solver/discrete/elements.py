@@ -1,4 +1,4 @@
-"""Plane elasticity on rectangles of equal elements.
+"""Plane elasticity on rectangular elements, and polynomials along a line.
 
 Corners of an element are numbered counter-clockwise from the lower left; degrees of
 freedom are x and y of every corner, or node, in turn.
@@ -6,18 +6,12 @@ freedom are x and y of every corner, or node, in turn.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
 from itertools import product
-from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
-from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.discrete.schur_complement import SchurComplement
-from solver.discrete.substructure import tributary
 
 MOST_POISSON = 0.4999
 """Largest Poisson's ratio; above it a body keeps its volume up to the rounding of its
@@ -112,99 +106,6 @@ def _bending(xi: float, eta: float, width: float, height: float) -> Array:
     strain[2, 2] = up
     strain[1, 3] = up
     return strain
-
-
-@dataclass(frozen=True, eq=False)
-class Rectangle:
-    """A rectangle of equal elements; nodes are numbered row by row from the lower left.
-
-    Width and height are those of an element, `elastic` is its `elastic_matrix`, (3, 3);
-    all are scaled.
-    """
-
-    columns: int
-    rows: int
-    width: float
-    height: float
-    elastic: Array
-
-    n_axes: ClassVar[int] = 2
-
-    @property
-    def n_nodes(self) -> int:
-        """Number of nodes."""
-        return (self.columns + 1) * (self.rows + 1)
-
-    @cached_property
-    def nodes(self) -> Indices:
-        """Index of every node, shape (rows + 1, columns + 1), from below."""
-        shape = self.rows + 1, self.columns + 1
-        return np.arange(self.n_nodes, dtype=np.intp).reshape(shape)
-
-    @cached_property
-    def elements(self) -> Indices:
-        """Corners of every element, counter-clockwise, row by row, (n_elements, 4)."""
-        nodes = self.nodes
-        corners = [
-            nodes[:-1, :-1],
-            nodes[:-1, 1:],
-            nodes[1:, 1:],
-            nodes[1:, :-1],
-        ]
-        return np.stack([corner.ravel() for corner in corners], axis=1)
-
-    @cached_property
-    def stiffness(self) -> sparse.csc_array:
-        """Stiffness of the whole mesh, shape (2 n_nodes, 2 n_nodes), scaled."""
-        element = element_stiffness(self.width, self.height, self.elastic)
-        dofs = dofs_of(self.elements)
-        rows = np.repeat(dofs, len(element), axis=1)
-        columns = np.tile(dofs, len(element))
-        values = np.tile(element.ravel(), len(dofs))
-        size = 2 * self.n_nodes
-        return sparse.csc_array(
-            (values, (rows.ravel(), columns.ravel())), shape=(size, size)
-        )
-
-    @cached_property
-    def outline(self) -> SchurComplement:
-        """Stiffness condensed onto the degrees of freedom on the outline."""
-        is_outer = np.ones_like(self.nodes, dtype=bool)
-        is_outer[1:-1, 1:-1] = False
-        return SchurComplement(self.stiffness, dofs_of(self.nodes[is_outer]))
-
-    def edge(self, side: str) -> Indices:
-        """Nodes of a side in ascending order of their coordinate, (nodes along,)."""
-        edges: dict[str, Indices] = {
-            "bottom": self.nodes[0],
-            "top": self.nodes[-1],
-            "left": self.nodes[:, 0],
-            "right": self.nodes[:, -1],
-        }
-        return edges[side]
-
-    def slenderness(self, side: str) -> float:
-        """Length of a side over the depth behind it."""
-        ratio = self.columns * self.width / (self.rows * self.height)
-        if side in ("left", "right"):
-            return 1.0 / ratio
-        return ratio
-
-    def edge_weights(self, side: str) -> Array:
-        """Length of a side that belongs to each node, (nodes along,), scaled."""
-        if side in ("left", "right"):
-            return self.height * tributary(self.rows)
-        return self.width * tributary(self.columns)
-
-    def stress(self, displacement: Array) -> Array:
-        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), scaled.
-
-        `displacement` is that of all nodes, (n_nodes, 2), scaled; incompatible modes
-        have no strain at the centres.
-        """
-        strain = strain_matrix(0.0, 0.0, self.width, self.height)
-        corners = displacement[self.elements].reshape(len(self.elements), -1)
-        return np.asarray(corners @ (self.elastic @ strain).T)
 
 
 def dofs_of(nodes: Indices) -> Indices:

@@ -8,8 +8,8 @@ from scipy.sparse.csgraph import connected_components
 
 from solver.arrays import Indices
 from solver.discrete.problem import Problem
-from solver.refusal import RefusedError
 from solver.laws import Contact
+from solver.refusal import RefusedError
 
 
 class LooseBodiesError(RefusedError):

@@ -26,6 +26,8 @@ AXES = {
     "top": 1,
 }
 """Axis normal to each side: 0 is x, 1 is y."""
+SAME_PLACE = 1e-9
+"""Distance of two places that are the same, over the size of all bodies."""
 
 
 class LoopFields(Protocol):
@@ -295,7 +297,9 @@ def _edges(inside: Inside, side: str) -> tuple[Indices, Indices]:
     else:
         outermost = places.max()
     ends = np.stack([inside.elements, np.roll(inside.elements, -1, axis=1)])
-    along = np.all(places[ends] == outermost, axis=0)
+    # Nodes of different bodies may be off by rounding.
+    near = SAME_PLACE * np.ptp(places)
+    along = np.all(np.abs(places[ends] - outermost) <= near, axis=0)
     return ends[:, along], inside.bodies[np.nonzero(along)[0]]
 
 

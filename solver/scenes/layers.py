@@ -12,9 +12,9 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.plane.rectangles.bricks import Brick
-from solver.discrete.plane.rectangles.stack_bodies import ends_along
 from solver.discrete.plane.rectangles.sides import Side, SideComponent
 from solver.discrete.plane.rectangles.stack import Stack
+from solver.discrete.plane.rectangles.stack_bodies import ends_along
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.reference.closed_forms import ExactCurve

@@ -12,11 +12,11 @@ from scipy import sparse
 
 from solver.arrays import Array
 from solver.discrete import discretise
+from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.rectangles.bricks import Brick
-from solver.discrete.plane.rectangles.stack_bodies import ends_along
-from solver.discrete.plane.rectangles.cut_stack import CutStack
 from solver.discrete.plane.rectangles.sides import Side, SideComponent
 from solver.discrete.plane.rectangles.stack import Stack
+from solver.discrete.plane.rectangles.stack_bodies import bodies_of, ends_along
 from solver.discrete.problem import Problem
 from solver.discrete.rods.cut_rods import CutRods
 from solver.discrete.rods.rods import End, Rods
@@ -247,7 +247,7 @@ def test_substructures_end_at_cuts_and_where_bodies_end() -> None:
 
 
 def test_parts_tile_their_bodies_and_pairs_their_joints() -> None:
-    cut = CutStack(pressed((3, 2), bodies=2))
+    cut = CutBodies(bodies_of(pressed((3, 2), bodies=2)))
     areas = [len(part.mesh.elements) for part in cut.parts]
     assert sum(areas) == 2 * 6 * 4
     of_parts = [

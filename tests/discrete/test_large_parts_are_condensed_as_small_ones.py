@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.discrete import schur_complement
-from solver.discrete.elements import Rectangle, dofs_of, elastic_matrix
+from solver.discrete import Lattice, schur_complement
+from solver.discrete.elements import dofs_of, elastic_matrix
 from solver.discrete.schur_complement import (
     FewEliminated,
     ManyEliminated,
     SchurComplement,
 )
 
-BODY = Rectangle(26, 18, 0.04, 0.06, elastic_matrix(1.0, 0.3, "strain"))
+BODY = Lattice(26, 18, 0.04, 0.06)
+STIFFNESS = BODY.stiffness(elastic_matrix(1.0, 0.3, "strain"), np.arange(26 * 18))
+WHOLE = sparse.csc_array(STIFFNESS)
 SIDES = [("bottom",), ("left", "top"), ("left", "right", "bottom", "top")]
 
 
 def kept_on(sides: tuple[str, ...]) -> Indices:
-    return dofs_of(np.unique(np.concatenate([BODY.edge(side) for side in sides])))
+    return dofs_of(np.unique(np.concatenate([BODY.side(side) for side in sides])))
 
 
 def close(found: Array, wanted: Array) -> bool:
@@ -29,9 +32,9 @@ def close(found: Array, wanted: Array) -> bool:
 def by_both(
     monkeypatch: pytest.MonkeyPatch, kept: Indices
 ) -> tuple[SchurComplement, SchurComplement]:
-    large = SchurComplement(BODY.stiffness, kept)
+    large = SchurComplement(WHOLE, kept)
     monkeypatch.setattr(schur_complement, "MANY", 10**9)
-    return large, SchurComplement(BODY.stiffness, kept)
+    return large, SchurComplement(WHOLE, kept)
 
 
 @pytest.mark.parametrize("sides", SIDES)
@@ -43,7 +46,7 @@ def test_both_ways_condense_and_recover_alike(
     assert isinstance(large._eliminated, ManyEliminated)
     assert isinstance(small._eliminated, FewEliminated)
     random = np.random.default_rng(3)
-    forces = random.normal(size=(2, 2 * BODY.n_nodes, 3))
+    forces = random.normal(size=(2, 2 * BODY.grid.size, 3))
     moved = random.normal(size=(len(kept), 3))
     every = np.eye(len(kept))
     assert close(large.stiffness, small.stiffness)
@@ -59,14 +62,12 @@ def test_both_ways_condense_and_recover_alike(
 @pytest.mark.parametrize("sides", SIDES)
 def test_a_large_body_moves_freely_as_a_rigid_one(sides: tuple[str, ...]) -> None:
     kept = kept_on(sides)
-    row, column = np.divmod(np.arange(BODY.n_nodes), BODY.columns + 1)
-    x = BODY.width * column
-    y = BODY.height * row
-    motions = np.zeros((BODY.n_nodes, 2, 3))
+    x, y = BODY.nodes.T
+    motions = np.zeros((BODY.grid.size, 2, 3))
     motions[:, 0] = np.stack([np.ones_like(x), np.zeros_like(x), -y], axis=1)
     motions[:, 1] = np.stack([np.zeros_like(x), np.ones_like(x), x], axis=1)
     rigid = motions.reshape(-1, 3)
-    condensed = SchurComplement(BODY.stiffness, kept)
+    condensed = SchurComplement(WHOLE, kept)
     size = np.abs(condensed.stiffness).max()
     assert np.abs(condensed.stiffness @ rigid[kept]).max() <= 1e-12 * size
     assert close(condensed.recover(rigid[kept], None), rigid)
@@ -77,15 +78,15 @@ def test_few_entries_are_multiplied_as_among_all_zeros(
 ) -> None:
     outline = kept_on(SIDES[-1])
     monkeypatch.setattr(schur_complement, "MANY", 10**9)
-    dense = SchurComplement(BODY.stiffness, outline)
+    dense = SchurComplement(WHOLE, outline)
     monkeypatch.setattr(schur_complement, "DENSE", 0)
-    assert close(SchurComplement(BODY.stiffness, outline).stiffness, dense.stiffness)
+    assert close(SchurComplement(WHOLE, outline).stiffness, dense.stiffness)
 
 
 def test_few_of_many_are_condensed_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """Degrees of freedom that are kept come last in the factor where they are many."""
-    corner = dofs_of(BODY.edge("bottom")[:3])
-    assert ManyEliminated.of(BODY.stiffness, corner) is None
+    corner = dofs_of(BODY.side("bottom")[:3])
+    assert ManyEliminated.of(WHOLE, corner) is None
     monkeypatch.setattr(schur_complement, "SOME", 0)
     monkeypatch.setattr(schur_complement, "WIDE", 1)
-    assert ManyEliminated.of(BODY.stiffness, corner) is None
+    assert ManyEliminated.of(WHOLE, corner) is None

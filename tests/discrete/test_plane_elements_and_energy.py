@@ -7,29 +7,29 @@ import pytest
 from plane import solved as driven
 from scipy.sparse.linalg import spsolve
 
-from solver.discrete.elements import (
-    EDGE_MASS,
-    Rectangle,
-    dofs_of,
-    elastic_matrix,
-)
+from solver.discrete import Body, Lattice
+from solver.discrete.elements import EDGE_MASS, dofs_of, elastic_matrix
+from solver.discrete.plane.body_parts import ShapePart
 from solver.discrete.schur_complement import SchurComplement
 
 STATES = ["strain", "stress"]
 
 
 def rectangle(state="strain", poisson=0.3, columns=4, rows=3, width=0.5, height=0.25):
-    return Rectangle(columns, rows, width, height, elastic_matrix(1.0, poisson, state))
+    """A lattice as a single part, in units of a metre and of Young's modulus."""
+    shape = Lattice(columns, rows, width, height)
+    body = Body("rectangle", shape, 1.0, poisson)
+    elements = np.arange(columns * rows)
+    return ShapePart(body, elements, shape.grid.ravel(), (1.0, 1.0), state)
 
 
-def places(mesh):
-    row, column = np.divmod(np.arange(mesh.n_nodes), mesh.columns + 1)
-    return np.stack([column * mesh.width, row * mesh.height], axis=1)
+def on_side(mesh, name):
+    return mesh.body.shape.side(name)
 
 
 def solved(mesh, held, values, force):
     """Solve for all nodes with some degrees of freedom prescribed."""
-    whole = mesh.stiffness
+    whole = mesh.stiffness.tocsc()
     free = np.setdiff1d(np.arange(whole.shape[0]), held)
     found = np.zeros(whole.shape[0])
     found[held] = values
@@ -43,12 +43,13 @@ def solved(mesh, held, values, force):
 def test_uniform_strain_has_no_forces_inside_and_its_own_stress(state):
     mesh = rectangle(state)
     gradient = np.array([[0.3, -0.7], [0.2, 0.5]])
-    displacement = places(mesh) @ gradient.T
+    displacement = mesh.body.shape.nodes @ gradient.T
     force = (mesh.stiffness @ displacement.ravel()).reshape(-1, 2)
-    inner = np.setdiff1d(np.arange(mesh.n_nodes), mesh.outline.kept // 2)
+    inner = np.setdiff1d(mesh.nodes, mesh.outline.kept // 2)
     np.testing.assert_allclose(force[inner], 0.0, atol=1e-14)
     strain = [gradient[0, 0], gradient[1, 1], gradient[0, 1] + gradient[1, 0]]
-    expected = np.broadcast_to(mesh.elastic @ strain, (len(mesh.elements), 3))
+    elastic = elastic_matrix(1.0, 0.3, state)
+    expected = np.broadcast_to(elastic @ strain, (len(mesh.elements), 3))
     np.testing.assert_allclose(mesh.stress(displacement), expected, atol=1e-14)
 
 
@@ -60,9 +61,9 @@ def test_one_thin_row_of_elements_bends_as_a_beam(state, factor):
     height = 0.1
     columns = 20
     mesh = rectangle(state, 0.3, columns, 1, length / columns, height)
-    left = mesh.edge("left")
-    right = mesh.edge("right")
-    force = np.zeros((mesh.n_nodes, 2))
+    left = on_side(mesh, "left")
+    right = on_side(mesh, "right")
+    force = np.zeros((len(mesh.nodes), 2))
     moment = 1e-3
     stress = np.array([6.0, -6.0]) * moment / height**2
     force[right, 0] = height * EDGE_MASS @ stress
@@ -79,9 +80,9 @@ def test_a_nearly_incompressible_bent_beam_does_not_lock():
     ends = []
     for poisson in (0.3, 0.4999):
         mesh = rectangle("strain", poisson, 20, 2, 0.5, 0.05)
-        left = mesh.edge("left")
-        right = mesh.edge("right")
-        force = np.zeros((mesh.n_nodes, 2))
+        left = on_side(mesh, "left")
+        right = on_side(mesh, "right")
+        force = np.zeros((len(mesh.nodes), 2))
         force[right[[0, -1]], 0] = [1.0, -1.0]
         held = dofs_of(left)
         found = solved(mesh, held, np.zeros(len(held)), force.ravel()).reshape(-1, 2)
@@ -97,8 +98,8 @@ def test_a_nearly_incompressible_bent_beam_does_not_lock():
 def test_condensed_displacements_are_recovered(sides):
     mesh = rectangle()
     random = np.random.default_rng(7)
-    force = random.normal(size=(2 * mesh.n_nodes, 3))
-    nodes = np.unique(np.concatenate([mesh.edge(side) for side in sides]))
+    force = random.normal(size=(2 * len(mesh.nodes), 3))
+    nodes = np.unique(np.concatenate([on_side(mesh, side) for side in sides]))
     held = SchurComplement(mesh.outline, dofs_of(nodes))
     values = random.normal(size=(len(held.kept), 3))
     found = held.recover(values, force).reshape(-1, 3)

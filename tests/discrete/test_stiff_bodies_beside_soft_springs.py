@@ -75,7 +75,9 @@ def test_the_reference_holds_whatever_the_stiffness_of_body_and_spring(values):
     noise = 1e-9 * values.weight
     assert found.converged.all()
     assert kkt_residual(found, problem) < 1e-9
-    assert forces.unbalanced(values) < 1e-12
+    # Of a hard spring that is far away the slack is not known to the last newton.
+    is_far = values.spring * values.slack > 1e20
+    assert forces.unbalanced(values) < (1e-9 if is_far else 1e-12)
     assert min(forces.pressing.min(), forces.spring.min()) >= -noise
     most = values.friction * forces.pressing
     assert np.all(np.abs(forces.contacts) <= most + noise)

@@ -195,6 +195,15 @@ class Bodies:
         lower = columns.min(axis=1)
         return lower, columns.max(axis=1) - lower
 
+    def has_macro(self, joint: Joint) -> bool:
+        """Check whether macro forces balance on a joint.
+
+        They do between bodies, but not between those of one group.
+        """
+        if joint.below is None or self.groups is None:
+            return joint.below is not None
+        return bool(self.groups[joint.above] != self.groups[joint.below])
+
     @property
     def _given(self) -> list[Held | Load]:
         """All holds, then all loads."""

@@ -47,6 +47,8 @@ def problem_of(structure: Bodies) -> Problem:
     scales = cut.scales
     nodes = structure.nodes / cut.length
     inside = Inside(cut.parts, nodes, scales, len(structure.instants))
+    order = [*cut.joint_names]
+    order += [spring.name for spring in structure.springs]
     problem = Problem(
         substructures=inside.substructures(),
         interfaces=dict(_interfaces(cut)),
@@ -55,7 +57,7 @@ def problem_of(structure: Bodies) -> Problem:
         scales=scales,
         inside=inside,
         has_short_joints=not np.all(cut.frames.has_pair | cut.frames.is_held),
-        order=(*cut.joint_names, *[spring.name for spring in structure.springs]),
+        order=tuple(order),
     )
     loose = loose_bodies(problem)
     if len(loose):
@@ -156,7 +158,7 @@ def _prescribed(cut: CutBodies, numbers: Sequence[int]) -> Dirichlet:
         held = cut.structure.held[number]
         shape = len(held.nodes), len(cut.structure.instants)
         given = np.broadcast_to(held.displacement, shape)
-        _, signs = cut.axes_held(held, held.nodes)
+        _, signs = cut.frames.axes_held(held, held.nodes)
         scaled = signs[:, None] * given / cut.length
         for part in range(cut.structure.bodies[held.body].substructures):
             owner = cut.owner(held.body, part)

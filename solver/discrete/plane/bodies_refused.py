@@ -87,9 +87,7 @@ def check_strengths(joints: Sequence[Joint], instants: int) -> None:
         shape = len(joint.nodes), instants
         check_value(f"{joint}.strength", joint.strength, Numbers((shape,), low=0.0))
         for other in joints:
-            is_alike = (
-                other.strength is not None and other.is_image == joint.is_image
-            )
+            is_alike = other.strength is not None and other.is_image == joint.is_image
             if (other.below is None) == (joint.below is None) and not is_alike:
                 raise RefusedError(
                     f"{other}.strength",

@@ -76,7 +76,7 @@ class ShapePart:
 
     @cached_property
     def key(self) -> Hashable:
-        """Key of a part, as `content`; quicker, but for meshes only in one structure."""
+        """Key of a part as `content`, but of a mesh only in one structure."""
         if isinstance(self.body.shape, Lattice):
             return self.content
         return id(self)
@@ -87,6 +87,14 @@ class ShapePart:
         if isinstance(self.body.shape, Beam):
             return 3
         return 2
+
+    def dofs_at(self, nodes: Indices, axes: Indices) -> Indices:
+        """Degrees of freedom at nodes of the shape, (n, 1) or (n, n_axes).
+
+        `axes` are the numbers of those of each node, which broadcast with (n, 1).
+        """
+        local = np.searchsorted(self.nodes, nodes)
+        return self.n_axes * local[:, None] + axes
 
     def has(self, nodes: Indices) -> Flags:
         """Mask of those nodes of the shape, (n,), that belong to the part."""
@@ -109,6 +117,18 @@ class ShapePart:
         if isinstance(body.shape, Beam):
             return self.direction_at_point / self.size
         return body.young / self.young / self.size
+
+    def direction_on_cut(self, chain: Indices, lengths: Array) -> Array:
+        """Search direction at the nodes along a cut, (n_nodes, n_axes), scaled.
+
+        `lengths` are those that belong to the nodes, (n_nodes,), m; beams are cut at
+        one node.
+        """
+        if isinstance(self.body.shape, Beam):
+            along = self.direction_at_point
+            return np.array([[along, along, self.direction_of_turn]])
+        k = self.direction_per_length * self.lengths_on_side(chain, lengths)
+        return np.repeat(k[:, None], 2, axis=1)
 
     def lengths_on_side(
         self, chain: Indices, lengths: Array, places: Indices | slice = slice(None)
@@ -202,12 +222,12 @@ class ShapePart:
         return PartForce(np.concatenate(patterns, axis=2), np.concatenate(courses))
 
     def arranged(self, nodes: Indices) -> Indices:
-        """Nodes of the part, (n_nodes,), as they lie: of a lattice row by row.
+        """Nodes of the part, (n_nodes,), as they lie: of a rectangle row by row.
 
-        Those of a lattice have the shape (n_rows, n_columns), others (n_nodes,).
+        Those of a rectangle have the shape (n_rows, n_columns), others (n_nodes,).
         """
         shape = self.body.shape
-        if isinstance(shape, Lattice):
+        if isinstance(shape, Lattice) and shape.is_rectangle(self.chosen):
             return nodes.reshape(-1, shape.columns_of(self.nodes))
         return nodes
 
@@ -255,9 +275,7 @@ class ShapePart:
         outer = np.searchsorted(self.nodes, shape.outline(self.chosen))
         return CACHE.get(
             ("on outline", self.content),
-            lambda: SchurComplement(
-                sparse.csc_array(self.stiffness), dofs_of(outer)
-            ),
+            lambda: SchurComplement(sparse.csc_array(self.stiffness), dofs_of(outer)),
         )
 
     def stiffness_in(self, frames: Array) -> sparse.csc_array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Hashable, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 
@@ -12,17 +13,15 @@ from solver.discrete.condensed_part import (
     N_AXES,
     CondensedPart,
     PartForce,
-    Trace,
     numbered,
 )
 from solver.discrete.loose_bodies import LooseBodiesError
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.bodies import Bodies
-from solver.discrete.plane.body import Body, Held, Load
+from solver.discrete.plane.body import Body, Load
 from solver.discrete.plane.body_parts import ShapePart
+from solver.discrete.plane.body_traces import TracesOfParts
 from solver.discrete.plane.cut_shapes import CutShape
-from solver.discrete.plane.joint import Joint
-from solver.discrete.plane.joint_laws import JOINT_SIDES
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
 from solver.discrete.plane.lattice import Lattice
 from solver.discrete.plane.shared_operators import PartNodes, SharedOperators
@@ -55,9 +54,7 @@ class CutBodies:
     shape_parts
         All parts in the axes of their shapes.
     parts
-        Parts, body by body. Their rows are by ("above", piece), ("below", piece),
-        ("first", body, seam), ("second", body, seam), ("held", number) and ("spring",
-        number).
+        Parts, body by body; rows are by the names of `TracesOfParts`.
     """
 
     def __init__(self, structure: Bodies) -> None:
@@ -91,12 +88,11 @@ class CutBodies:
         counts = [body.substructures for body in bodies]
         self.first_parts: list[int] = np.cumsum([0, *counts]).tolist()
         self._body_of_parts = np.repeat(np.arange(len(bodies)), counts).tolist()
-        self.shape_parts = self._of_shapes()
-        self._traces: list[dict[Hashable, Trace]] = [{} for _ in self.shape_parts]
-        self._trace_pieces()
-        self._trace_seams()
-        self._trace_held()
-        self._trace_springs()
+        of_bodies = self._of_shapes()
+        self.shape_parts = list(chain.from_iterable(of_bodies))
+        self._traces = TracesOfParts(
+            structure, self.cuts, self.frames, self.pieces, of_bodies
+        ).all()
         self._operators = SharedOperators(self._own_frames)
         self.parts = list(self._parts())
 
@@ -167,8 +163,8 @@ class CutBodies:
         own[nodes] = snapped(turned.reshape(-1, 2)).reshape(-1, 2, 2)
         return own
 
-    def _of_shapes(self) -> list[ShapePart]:
-        """Parts of shapes, body by body; equal bodies share theirs."""
+    def _of_shapes(self) -> list[list[ShapePart]]:
+        """Parts of every body; equal bodies share theirs."""
         found = dict[Hashable, list[ShapePart]]()
         parts = []
         for body, cut in zip(self.structure.bodies, self.cuts, strict=True):
@@ -184,129 +180,8 @@ class CutBodies:
                     )
                     for elements, nodes in zip(cut.elements, cut.nodes, strict=True)
                 ]
-            parts += found[key]
+            parts.append(found[key])
         return parts
-
-    def _dofs(self, owner: int, nodes: Indices, axes: Indices) -> Indices:
-        """Degrees of freedom of a part at nodes of its body: (n, 1) or (n, n_axes).
-
-        `axes` are the numbers of those of each node, which broadcast with (n, 1).
-        """
-        part = self.shape_parts[owner]
-        local = np.searchsorted(part.nodes, nodes)
-        return part.n_axes * local[:, None] + axes
-
-    def _trace_pieces(self) -> None:
-        """Add the rows of the joints."""
-        known = dict[Hashable, Trace]()
-        kinds = self.structure.joint_kinds
-        for number, piece in enumerate(self.pieces):
-            joint = self.structure.joints[piece.joint]
-            sides = zip(JOINT_SIDES, joint.sides, piece.parts, strict=False)
-            for name, (_, nodes), owner in sides:
-                own = self.shape_parts[owner]
-                has_macro = self.has_macro(joint)
-                # Pieces of joints that are alike share their arrays.
-                key = (
-                    id(own),
-                    kinds[piece.joint],
-                    name,
-                    id(piece.weights),
-                    has_macro,
-                    joint.strength is None,
-                )
-                if key not in known:
-                    # Where the pressure is known nothing moves across the joint.
-                    axes = np.arange(2)
-                    if joint.strength is not None:
-                        axes = np.array([joint.along])
-                    dofs = self._dofs(owner, nodes[piece.places], axes)
-                    lengths = own.lengths_on_side(nodes, piece.weights, piece.places)
-                    k = own.direction_per_length * lengths
-                    direction = np.repeat(k[:, None], len(axes), axis=1)
-                    known[key] = Trace(dofs, direction, has_macro)
-                self._traces[owner][name, number] = known[key]
-
-    def has_macro(self, joint: Joint) -> bool:
-        """Check whether macro forces balance on a joint.
-
-        They do between bodies, but not between those of one group.
-        """
-        groups = self.structure.groups
-        if joint.below is None or groups is None:
-            return joint.below is not None
-        return bool(groups[joint.above] != groups[joint.below])
-
-    def _trace_seams(self) -> None:
-        """Add the rows of both sides of the cuts inside bodies."""
-        for body, cut in enumerate(self.cuts):
-            for number, seam in enumerate(cut.seams):
-                for name, part in zip(("first", "second"), seam.parts, strict=True):
-                    owner = self.owner(body, part)
-                    own = self.shape_parts[owner]
-                    dofs = self._dofs(owner, seam.nodes, np.arange(own.n_axes))
-                    if own.n_axes == 2:
-                        lengths = own.lengths_on_side(seam.nodes, seam.weights)
-                        k = np.repeat(
-                            own.direction_per_length * lengths[:, None], 2, axis=1
-                        )
-                    else:
-                        k = np.array(
-                            [
-                                [
-                                    own.direction_at_point,
-                                    own.direction_at_point,
-                                    own.direction_of_turn,
-                                ]
-                            ]
-                        )
-                    self._traces[owner][name, body, number] = Trace(dofs, k, True)
-
-    def _trace_held(self) -> None:
-        """Add the rows of prescribed displacements, in every part with the node."""
-        for number, held in enumerate(self.structure.held):
-            weights = self._weights_held(held)
-            shape = self.structure.bodies[held.body].shape
-            for part in range(self.structure.bodies[held.body].substructures):
-                owner = self.owner(held.body, part)
-                own = self.shape_parts[owner]
-                is_own = own.has(held.nodes)
-                if not is_own.any():
-                    continue
-                nodes = held.nodes[is_own]
-                axes, _ = self.axes_held(held, nodes)
-                dofs = self._dofs(owner, nodes, axes[:, None])
-                lengths = weights[is_own]
-                if shape.edges_of(nodes) is not None:
-                    lengths = own.lengths_on_side(nodes, lengths)
-                k = own.direction_per_length * lengths[:, None]
-                if held.axis == 2:
-                    k = np.full_like(k, own.direction_of_turn)
-                self._traces[owner]["held", number] = Trace(dofs, k, False)
-
-    def _trace_springs(self) -> None:
-        """Add the rows of nodes under springs, in the first part with each."""
-        for number, spring in enumerate(self.structure.springs):
-            node = np.array([spring.node])
-            owner = self.owner(spring.body, 0)
-            while not self.shape_parts[owner].has(node).all():
-                owner += 1
-            k = self.shape_parts[owner].direction_per_length * spring.length
-            dofs = self._dofs(owner, node, np.arange(2))
-            self._traces[owner]["spring", number] = Trace(dofs, np.full((1, 2), k), False)
-
-    def axes_held(self, held: Held, nodes: Indices) -> tuple[Indices, Array]:
-        """Degree of freedom of each node that is held, and its sign, (n,) both."""
-        if held.axis == 2:
-            return np.full(len(nodes), 2), np.ones(len(nodes))
-        return self.frames.held_at(held.body, nodes, held.axis)
-
-    def _weights_held(self, held: Held) -> Array:
-        """Tributary length of each held node, (n,), m; equal ones without a chain."""
-        shape = self.structure.bodies[held.body].shape
-        if shape.edges_of(held.nodes) is None:
-            return np.full(len(held.nodes), shape.size / len(held.nodes))
-        return shape.shares(held.nodes)
 
     def _parts(self) -> Iterator[CondensedPart]:
         """Parts of all bodies, with their rows numbered part by part."""

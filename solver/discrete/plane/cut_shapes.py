@@ -47,9 +47,7 @@ class CutShape:
         Where parts are glued.
     """
 
-    def __init__(
-        self, shape: Shape, count: int, labels: Indices | None = None
-    ) -> None:
+    def __init__(self, shape: Shape, count: int, labels: Indices | None = None) -> None:
         if labels is None:
             labels = _labels_of(shape, count)
         self.labels = labels
@@ -66,7 +64,7 @@ class CutShape:
 
     @classmethod
     def of(cls, body: Body) -> CutShape:
-        """How a body is cut, which no load and no friction changes."""
+        """Cut of a body, from the cache where an earlier structure had an equal one."""
         shape = body.shape
         given = None
         if body.parts is not None:
@@ -77,10 +75,12 @@ class CutShape:
     @property
     def nbytes(self) -> int:
         """Memory of labels, elements, nodes and seams, B."""
-        arrays = [self.labels, *self.elements, *self.nodes]
-        for seam in self.seams:
-            arrays += [seam.nodes, seam.positions, seam.weights]
-        return sum(each.nbytes for each in arrays)
+        of_parts = sum(each.nbytes for each in [*self.elements, *self.nodes])
+        of_seams = sum(
+            seam.nodes.nbytes + seam.positions.nbytes + seam.weights.nbytes
+            for seam in self.seams
+        )
+        return self.labels.nbytes + of_parts + of_seams
 
 
 def _labels_of(shape: Shape, count: int) -> Indices:

@@ -20,7 +20,7 @@ from solver.checks import (
     check_value,
     checked_copies,
 )
-from solver.refusal import RefusedError
+from solver.refusal import RefusedError, Words
 
 
 @cache
@@ -102,6 +102,13 @@ class Joint:
         check(self, **kinds)
         if self.below is not None:
             check(self, nodes_below=kinds["nodes"])
+        if self.paired is not None and np.shape(self.paired) != (len(self.nodes),):
+            raise RefusedError(
+                f"{self}.paired",
+                Words(f"of shape {np.shape(self.paired)}"),
+                f"a mask of its {len(self.nodes)} nodes",
+                "give one flag for each node",
+            )
         if self.is_image and (self.strength is None or self.below is not None):
             raise RefusedError(
                 f"{self}.is_image",
@@ -117,7 +124,7 @@ class Joint:
         self,
         names: Sequence[str],
         above: Sequence[int],
-        below: Sequence[int],
+        below: Sequence[int | None],
         normals: Array | None = None,
         starts: Sequence[float] | None = None,
     ) -> list[Joint]:

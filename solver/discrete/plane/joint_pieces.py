@@ -12,8 +12,8 @@ import numpy as np
 
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.plane.body import Body, Held, NodeSpring
-from solver.discrete.plane.joint import Joint
 from solver.discrete.plane.cut_shapes import CutShape
+from solver.discrete.plane.joint import Joint
 from solver.discrete.plane.joint_laws import JointPiece
 from solver.discrete.plane.node_pairs import NodePairs
 from solver.refusal import RefusedError, Words
@@ -133,9 +133,11 @@ class NodeFrames:
         """Directions at the nodes of a body, (n, 2, 2)."""
         return self.frames[self.first_nodes[number] : self.first_nodes[number + 1]]
 
-    def held_at(self, number: int, nodes: Indices, axis: int) -> tuple[Indices, Array]:
-        """Degree of freedom along an axis, and its sign, of held nodes, (n,) both."""
-        along = self.of_body(number)[nodes, :, axis]
+    def axes_held(self, held: Held, nodes: Indices) -> tuple[Indices, Array]:
+        """Degree of freedom that is held, and its sign, of nodes, (n,) all."""
+        if held.axis == 2:
+            return np.full(len(nodes), 2), np.ones(len(nodes))
+        along = self.of_body(held.body)[nodes, :, held.axis]
         which = np.abs(along).argmax(axis=1)
         return which, along[np.arange(len(nodes)), which]
 

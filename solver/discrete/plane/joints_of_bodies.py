@@ -42,6 +42,7 @@ def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
     if joints[0].is_image:
         law = surface.law.of_one_side()
         surface = surface._replace(law=law, slip_ratio=2.0)
+    beside: BodyStiffness | NodalStiffness
     if cut.depths is None:
         beside = _stiffness_beside(cut, numbers, pairs)
     else:
@@ -138,9 +139,11 @@ def _resting_lines(cut: CutBodies) -> Indices:
 
 
 def _rows_of(pairs: JointPairs) -> Indices:
-    """Boundary rows of pairs, (n_pairs, 2, n_sides): tangential ones, then normal."""
-    assert pairs.normal is not None
-    components = pairs.tangent, pairs.normal
+    """Boundary rows of pairs, (n_pairs, 2, n_sides): tangential ones, then normal.
+
+    Where the pressure is known there are no normal ones: tangential ones again.
+    """
+    components = pairs.tangent, pairs.normal or pairs.tangent
     return np.stack([np.stack(each.sides, axis=1) for each in components], axis=1)
 
 
@@ -170,7 +173,7 @@ def _macro_bases(cut: CutBodies, pairs: JointPairs) -> list[Array]:
     known = dict[Hashable, Array]()
     bases = []
     for piece in pieces:
-        if not cut.has_macro(joints[piece.joint]):
+        if not cut.structure.has_macro(joints[piece.joint]):
             bases.append(np.zeros((len(piece.places), 0)))
             continue
         part = cut.shape_parts[piece.parts[0]]

@@ -57,15 +57,24 @@ class Lattice:
         """Key of the lattice: equal ones have equal keys."""
         return self.columns, self.rows, self.width, self.height
 
+    def is_rectangle(self, elements: Indices) -> bool:
+        """Check whether some elements, (n,), fill a rectangle."""
+        columns, rows = self._extent(elements)
+        return columns * rows == len(elements)
+
     def content_of_part(self, elements: Indices) -> Hashable:
         """Key of some elements, ascending, (n,), wherever they lie in the lattice."""
+        size = self._extent(elements)
+        own: Hashable = size
+        if size[0] * size[1] != len(elements):
+            rows, columns = np.divmod(elements, self.columns)
+            own = (rows - rows.min()).tobytes(), (columns - columns.min()).tobytes()
+        return own, self.width, self.height
+
+    def _extent(self, elements: Indices) -> tuple[int, int]:
+        """Numbers of columns and rows in which some elements, (n,), lie."""
         rows, columns = np.divmod(elements, self.columns)
-        rows -= rows.min()
-        columns -= columns.min()
-        size = int(columns.max()) + 1, int(rows.max()) + 1
-        if size[0] * size[1] == len(elements):
-            return size, self.width, self.height
-        return rows.tobytes(), columns.tobytes(), self.width, self.height
+        return int(np.ptp(columns)) + 1, int(np.ptp(rows)) + 1
 
     @cached_property
     def grid(self) -> Indices:

@@ -161,7 +161,9 @@ def joints_of(bricks: Sequence[Brick]) -> list[BrickJoint]:
         first = np.maximum(x[above], x[below])
         last = np.minimum(ends[above], ends[below])
         touches = last > first
-        columns_of = [each[touches].tolist() for each in (above, below, first, last)]
-        for of_joint in zip(*columns_of, strict=True):
-            joints.append(BrickJoint(*of_joint, bool(is_upright)))
+        found = np.stack([above, below, first, last], axis=1)[touches]
+        joints += [
+            BrickJoint(above, below, first, last, bool(is_upright))
+            for above, below, first, last in found.tolist()
+        ]
     return sorted(joints, key=lambda joint: joint.above)

@@ -128,4 +128,4 @@ def _origins_of(stack: Stack) -> Array:
     """Lower left corner of every body, (n_bodies, 2), m."""
     corners = np.array([(brick.x, brick.y) for brick in stack.rectangles])
     size = np.array([stack.length, stack.height]) / np.array(stack.elements)
-    return corners * size
+    return np.asarray(corners * size)

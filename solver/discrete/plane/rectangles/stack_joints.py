@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -117,8 +116,7 @@ class StackJoints:
 
     def _corner(self, body: int, line: BrickJoint) -> int:
         """Begin of a body along a joint, in elements on the grid."""
-        brick = self.stack.rectangles[body]
-        return brick.y if line.is_upright else brick.x
+        return self.stack.rectangles[body][int(line.is_upright)]
 
     def _chain(self, body: int, side: str, line: BrickJoint) -> Indices:
         """Nodes of a body along a joint, (n,)."""
@@ -132,7 +130,7 @@ class StackJoints:
         nodes_below = None
         if line.below is not None:
             nodes_below = chains[1]
-        normal = [1.0, 0.0] if line.is_upright else [0.0, 1.0]
+        normal = np.eye(2)[1 - int(line.is_upright)]
         # The tangent of upright joints runs up, as that of lying ones to the right.
         joint = Joint(
             name="joint",
@@ -158,25 +156,18 @@ class StackJoints:
         strength = None
         if support.strength is not None:
             strength = support.strength[nodes]
-        return Joint(
-            name=joint.name,
-            above=joint.above,
-            nodes=joint.nodes,
-            below=None,
-            nodes_below=None,
-            normals=joint.normals,
+        return replace(
+            joint,
             gap=support.gap[nodes],
-            friction=joint.friction,
-            start=joint.start,
             strength=strength,
             is_image=support.is_image,
         )
 
     def _start(self, line: BrickJoint) -> float:
         """Position of the first node of a joint along the grid, m."""
-        size = self.stack.height if line.is_upright else self.stack.length
-        elements = self.stack.elements[line.is_upright]
-        return size / elements * line.first
+        axis = int(line.is_upright)
+        size = self.stack.length, self.stack.height
+        return size[axis] / self.stack.elements[axis] * line.first
 
     def _coefficients(self, line: BrickJoint) -> Array | float:
         """Coefficient of friction of a joint, or those of its nodes, (n,)."""
@@ -194,8 +185,8 @@ class StackJoints:
         if mu.ndim > 1:
             mu = mu[line.above - 1]
         if mu.size > 1:
-            return mu[nodes]
-        return mu.item()
+            return np.asarray(mu[nodes])
+        return float(mu.item())
 
     def _names(self, lines: Sequence[BrickJoint]) -> list[str]:
         """Names of joints; one that comes again has a number."""

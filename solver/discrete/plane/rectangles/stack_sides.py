@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
@@ -65,20 +65,17 @@ class StackSides:
         only those of bodies that reach farthest.
         """
         covered = self._covered()
-        return [
-            span
-            for side in SIDES
-            for body in range(len(self.shapes))
-            for span in self._spans_of(body, side, covered.get((body, side), []))
-        ]
+        spans = list[Span]()
+        for side, body in product(SIDES, range(len(self.shapes))):
+            spans += self._spans_of(body, side, covered.get((body, side), []))
+        return spans
 
     def _covered(self) -> dict[tuple[int, str], list[tuple[int, int]]]:
         """Ends of what lies under joints, in elements, by body and side."""
         covered = dict[tuple[int, str], list[tuple[int, int]]]()
         for line in self.lines:
             for body, side in line.sides:
-                brick = self.stack.rectangles[body]
-                corner = brick.y if line.is_upright else brick.x
+                corner = self.stack.rectangles[body][int(line.is_upright)]
                 ends = line.first - corner, line.last - corner
                 covered.setdefault((body, side), []).append(ends)
         return covered
@@ -178,23 +175,24 @@ class StackSides:
         """Loads of tractions, a load for each part of a body that they act on."""
         loads = list[Load]()
         for span in self.spans:
-            tractions = [
-                (axis, self._values(span, given))
-                for axis, given in enumerate(self.stack.sides[span.side])
-                if not given.prescribed and not given.is_zero
-            ]
-            if not tractions:
+            traction = self._traction(span)
+            if not traction.any():
                 continue
-            shape = span.last - span.first + 1, 2, len(self.stack.instants)
-            traction = np.zeros(shape)
-            for axis, values in tractions:
-                traction[:, axis] = values
             for own in self._of_parts(span):
                 name = f"load {len(loads) + 1} on {span.side}"
                 along = slice(own.first - span.first, own.last - span.first + 1)
                 force = self._force(span.side, traction[along])
                 loads.append(Load(name, span.body, self._chain(own), force))
         return loads
+
+    def _traction(self, span: Span) -> Array:
+        """Traction along x and y at the nodes of a span, (n, 2, n_instants), Pa."""
+        shape = span.last - span.first + 1, 2, len(self.stack.instants)
+        traction = np.zeros(shape)
+        for axis, given in enumerate(self.stack.sides[span.side]):
+            if not given.prescribed and not given.is_zero:
+                traction[:, axis] = self._values(span, given)
+        return traction
 
     def _of_parts(self, span: Span) -> Iterator[Span]:
         """Spans of the parts of a body on a span of it."""
@@ -209,9 +207,9 @@ class StackSides:
 
         Shape (n, 2, n_instants) both; between nodes the traction is linear.
         """
-        is_upright = side in ("left", "right")
-        shape = self.shapes[0]
-        size = shape.height if is_upright else shape.width
+        size = self.shapes[0].width
+        if side in ("left", "right"):
+            size = self.shapes[0].height
         ends = np.stack([traction[:-1], traction[1:]])
         of_edges = size * np.einsum("ab,bnct->anct", EDGE_MASS, ends)
         force = np.zeros_like(traction)
