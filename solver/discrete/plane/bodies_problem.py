@@ -5,8 +5,7 @@ Parts of one body are glued where they were cut. Contact forces are lumped at th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 import numpy as np
@@ -22,6 +21,7 @@ from solver.discrete.plane.joint_laws import glued, laws_of
 from solver.discrete.plane.joints_of_bodies import law_of_joints
 from solver.discrete.plane.makers.band import Band
 from solver.discrete.problem import Problem
+from solver.discrete.scales import Scales
 from solver.laws import (
     BodyStiffness,
     Component,
@@ -34,9 +34,23 @@ from solver.laws import (
 )
 from solver.refusal import Words
 
+RestOf = Callable[[Inside, Scales], Array | None]
 
-def problem_of(structure: Bodies) -> Problem:
+
+def _nowhere(_: Inside, __: Scales) -> None:
+    """No displacement to start from: bodies that need none."""
+
+
+def problem_of(structure: Bodies, rest_of: RestOf = _nowhere) -> Problem:
     """Discrete problem of bodies: their parts, interfaces and inside.
+
+    Parameters
+    ----------
+    structure
+        The bodies.
+    rest_of
+        Function of the inside and the scales that returns a displacement to start
+        from, scaled, (n_dofs, n_instants), or None.
 
     Raises
     ------
@@ -56,6 +70,7 @@ def problem_of(structure: Bodies) -> Problem:
         instants=structure.instants,
         scales=scales,
         inside=inside,
+        rest=rest_of(inside, scales),
         has_short_joints=not np.all(cut.frames.has_pair | cut.frames.is_held),
         order=tuple(order),
     )
@@ -79,15 +94,17 @@ def problem_of_band(band: Band) -> Problem:
     and a search from zero with it, by a share of the elongation an iteration: so it
     starts where the band has slid to.
     """
-    problem = problem_of(band)
     slide = band.slide()
-    inside = problem.inside
-    if slide is None or inside is None:
-        return problem
-    # The guide turns clockwise about the origin.
-    modes = inside.rigid_modes(np.arange(problem.n_dofs), np.zeros(2))
-    turn = modes[:, 2]
-    return replace(problem, rest=np.outer(turn, -slide / band.guide.radius))
+
+    def rest_of(inside: Inside, _: Scales) -> Array | None:
+        if slide is None:
+            return None
+        # The guide turns clockwise about the origin.
+        every = np.arange(len(inside.positions))
+        turn = inside.rigid_modes(every, np.zeros(2))[:, 2]
+        return np.outer(turn, -slide / band.guide.radius)
+
+    return problem_of(band, rest_of)
 
 
 def _interfaces(cut: CutBodies) -> Iterator[tuple[str, Interface]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
+from itertools import chain
 
 import numpy as np
 
@@ -45,7 +46,7 @@ class TracesOfParts:
         self._frames = frames
         self._pieces = pieces
         self._of_bodies = of_bodies
-        self._parts = [part for of_body in of_bodies for part in of_body]
+        self._parts = list(chain.from_iterable(of_bodies))
         counts = [len(of_body) for of_body in of_bodies]
         self._firsts: list[int] = np.cumsum([0, *counts]).tolist()
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.plane.rectangles.stack_bodies import bodies_of
 from solver.discrete.plane.rectangles.stack_sides import is_moved
 from solver.discrete.problem import Problem
+from solver.discrete.scales import Scales
 from solver.refusal import RefusedError, Words
 
 
@@ -27,7 +28,7 @@ def problem_of(stack: Stack) -> Problem:
         If bodies can move though all contacts are closed and stick.
     """
     try:
-        problem = problem_of_bodies(bodies_of(stack))
+        return problem_of_bodies(bodies_of(stack), partial(_rest, stack))
     except LooseBodiesError as error:
         held = [name for name, side in stack.sides.items() if is_moved(side)]
         raise RefusedError(
@@ -38,14 +39,9 @@ def problem_of(stack: Stack) -> Problem:
             "prescribe the displacement of one more side, or along both axes, or add a "
             "support",
         ) from error
-    assert problem.inside is not None
-    rest = _rest(stack, problem.inside)
-    if rest is None:
-        return problem
-    return replace(problem, rest=rest)
 
 
-def _rest(stack: Stack, inside: Inside) -> Array | None:
+def _rest(stack: Stack, inside: Inside, scales: Scales) -> Array | None:
     """Displacement of a body at rest on its support, (n_dofs, n_instants), scaled.
 
     None where the body has not to be brought onto its support.
@@ -56,8 +52,9 @@ def _rest(stack: Stack, inside: Inside) -> Array | None:
     x, y = inside.positions.T
     along_x, along_y, _ = inside.directions.T
     modes = np.stack([along_y, x * along_y - y * along_x], axis=1)
-    rest = np.asarray(modes @ (rigid / np.array([[stack.length], [1.0]])))
+    length = scales.displacement
+    rest = np.asarray(modes @ (rigid / np.array([[length], [1.0]])))
     if stack.spring is not None:
-        slide = rigid_slide(stack, stack.spring) / stack.length
+        slide = rigid_slide(stack, stack.spring) / length
         rest += np.outer(along_x, slide)
     return rest
