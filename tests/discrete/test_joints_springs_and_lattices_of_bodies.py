@@ -176,6 +176,48 @@ def test_a_node_without_a_pair_gives_its_length_to_its_neighbour() -> None:
     assert short.positions == pytest.approx(whole.positions[1:])
 
 
+@pytest.mark.parametrize("is_left_handed", [False, True])
+def test_where_joints_meet_in_a_corner_there_is_no_pair(is_left_handed: bool) -> None:
+    """Two blocks beside each other, both on a third one, on which they lie."""
+    side_by_side = on_each_other("lattice", is_left_handed=is_left_handed)
+    floor = Lattice(8, 2, LENGTH / 4, HEIGHT / 2)
+    bodies = [
+        *side_by_side.bodies,
+        Body("floor", floor, 2e10, 0.3, origin=np.array([0.0, -HEIGHT])),
+    ]
+    foot = LATTICE.side("bottom")
+    up = np.tile(UP, (5, 1))
+    joints = list(side_by_side.joints)
+    for number in (0, 1):
+        bed = floor.side("top")[4 * number : 4 * number + 5]
+        joints.append(Joint(f"bed {number}", number, foot, 2, bed, up))
+    ground = [
+        Held(f"ground {axis}", 2, floor.side("bottom"), axis, ZERO) for axis in (0, 1)
+    ]
+    free = [held for held in side_by_side.held if held.name == "pressed"]
+    structure = replace(
+        side_by_side, bodies=bodies, joints=joints, held=[*free, *ground]
+    )
+    problem = discretise(structure)
+    sizes = {name: len(law.positions) for name, law in problem.contacts.items()}
+    assert sizes == {"joint": 2, "bed 0": 4, "bed 1": 4}
+    assert problem.has_short_joints
+
+
+def test_a_spring_under_a_joint_that_is_turned_round_pulls_to_the_right() -> None:
+    """The ground is below the body, but the joint is told as if it were above it."""
+    structure = block(Body("block", LATTICE, 2e10, 0.3), friction=0.0)
+    floor = Lattice(4, 1, LENGTH / 4, HEIGHT)
+    bodies = [*structure.bodies]
+    bodies.append(Body("floor", floor, 2e10, 0.3, origin=np.array([0.0, -HEIGHT])))
+    foot = LATTICE.side("bottom")
+    joint = Joint("joint", 1, floor.side("top"), 0, foot, np.tile(-UP, (5, 1)))
+    held = [Held("ground", 1, floor.side("bottom"), axis, ZERO) for axis in (0, 1)]
+    problem = discretise(replace(structure, bodies=bodies, joints=[joint], held=held))
+    force = np.asarray(reference_of(problem).contact("spring").normal_force)[0]
+    assert force == pytest.approx(-PUSH, abs=1e-6)
+
+
 def test_positions_along_a_joint_begin_at_its_start() -> None:
     moved = discretise(on_each_other("mesh", start=0.7)).contacts["joint"]
     still = discretise(on_each_other("mesh")).contacts["joint"]

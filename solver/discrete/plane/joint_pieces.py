@@ -73,61 +73,71 @@ class NodeFrames:
         for each in held:
             if each.axis < 2:
                 self._held[first_nodes[each.body] + each.nodes, each.axis] = True
-        # Nodes with the global axes, whatever their joint.
-        self._global = self._held.copy()
-        for spring in springs:
-            self._global[first_nodes[spring.body] + spring.node] = True
+        sprung = [first_nodes[spring.body] + spring.node for spring in springs]
+        self._sprung = np.array(sprung, dtype=np.intp)
         # Nodes with the directions of a joint, and those of which joints disagree.
         self._of_joint = np.zeros(len(self.frames), dtype=bool)
         self._unlike = np.zeros(len(self.frames), dtype=bool)
-        normals = snapped(pairs.normals)
-        has_below = pairs.below >= 0
-        wanted = np.stack([snapped(pairs.tangents), normals], axis=1)
-        # Of upright joints of rectangles they are x and y, in this order.
-        wanted[pairs.along == 1] = np.eye(2)
-        chosen = pairs.is_paired
-        below = chosen & has_below
-        nodes = np.concatenate([pairs.above[chosen], pairs.below[below]])
-        self._turn(nodes, np.concatenate([wanted[chosen], wanted[below]]))
+        self._turn(pairs)
         self._hold()
+        self._pull()
         self.first_pairs = pairs.first
-        self.is_held = self._held_across(pairs.above, pairs.below, normals)
-        self.is_held &= pairs.is_paired & ~pairs.is_known
+        self.is_held = self._held_across(pairs) & pairs.is_paired & ~pairs.is_known
+        has_below = pairs.below >= 0
         differs = self._unlike[pairs.above] | (self._unlike[pairs.below] & has_below)
         self.has_pair = pairs.is_paired & ~differs & ~self.is_held
 
-    def _turn(self, nodes: Indices, wanted: Array) -> None:
-        """Turn frames of nodes, (n,), as their first joint wants it, (n, 2, 2)."""
+    def _turn(self, pairs: NodePairs) -> None:
+        """Turn frames of nodes to the tangent and the normal of their first joint."""
+        wanted = np.stack([pairs.tangents, pairs.normals], axis=1)
+        wanted = snapped(wanted.reshape(-1, 2)).reshape(-1, 2, 2)
+        # Of upright joints of rectangles they are x and y, in this order.
+        wanted[pairs.along == 1] = np.eye(2)
+        chosen = pairs.is_paired
+        below = chosen & (pairs.below >= 0)
+        nodes = np.concatenate([pairs.above[chosen], pairs.below[below]])
+        wanted = np.concatenate([wanted[chosen], wanted[below]])
+        along = np.concatenate([pairs.along[chosen], pairs.along[below]])
         # The last write wins.
         self.frames[nodes[::-1]] = wanted[::-1]
+        along_first = np.zeros(len(self.frames), dtype=np.intp)
+        along_first[nodes[::-1]] = along[::-1]
         differs = np.abs(self.frames[nodes] - wanted).max(axis=(1, 2)) > ALIKE
-        self._unlike[nodes[differs]] = True
+        self._unlike[nodes[differs | (along_first[nodes] != along)]] = True
         self._of_joint[nodes] = True
 
     def _hold(self) -> None:
-        """Turn the frames of nodes that are held or pulled back to the global axes."""
-        held = np.flatnonzero(self._global.any(axis=1))
+        """Turn the frames of held nodes back to the global axes."""
+        held = np.flatnonzero(self._held.any(axis=1))
         is_axis = np.abs(self.frames[held]).max(axis=1) == 1.0
-        is_skew = (self._global[held] & ~is_axis).any(axis=1)
+        is_skew = (self._held[held] & ~is_axis).any(axis=1)
         self._unlike[held] |= is_skew & self._of_joint[held]
         turned_back = held[is_skew | self._unlike[held]]
         self.frames[turned_back] = np.eye(2)
 
-    def _held_across(self, above: Indices, below: Indices, normals: Array) -> Flags:
-        """Mask of pairs, (n,), of which both nodes, (n,) each, are held across.
+    def _pull(self) -> None:
+        """Turn the frames of nodes under springs to the global axes."""
+        differs = np.any(self.frames[self._sprung] != np.eye(2), axis=(1, 2))
+        turned = self._sprung[differs]
+        self._unlike[turned] |= self._of_joint[turned]
+        self.frames[turned] = np.eye(2)
 
-        Normals are (n, 2); the node below is -1 on a support.
+    def _held_across(self, pairs: NodePairs) -> Flags:
+        """Mask of pairs, (n_pairs,), of which both nodes are held across.
+
+        A support is.
         """
-        has_below = below >= 0
-        across = np.abs(normals) > 0.0
-        held_above = (self._held[above] & across).any(axis=1)
-        held_below = (self._held[below] & across).any(axis=1) | ~has_below
+        across = np.abs(snapped(pairs.normals)) > 0.0
+        held_above = (self._held[pairs.above] & across).any(axis=1)
+        held_below = (self._held[pairs.below] & across).any(axis=1) | (pairs.below < 0)
         return np.asarray(held_above & held_below)
 
     @property
     def is_turned(self) -> Flags:
         """Mask of nodes whose directions may differ from their body's, (n_nodes,)."""
-        return self._of_joint | self._global.any(axis=1)
+        is_turned = self._of_joint | self._held.any(axis=1)
+        is_turned[self._sprung] = True
+        return is_turned
 
     def of_body(self, number: int) -> Array:
         """Directions at the nodes of a body, (n, 2, 2)."""
