@@ -60,7 +60,8 @@ class CutBodies:
     def __init__(self, structure: Bodies) -> None:
         self.structure = structure
         self.length = float(structure.box[1].max())
-        self.young = max(_modulus(body) for body in structure.bodies)
+        # The softest body deforms most: beside it stiff ones are rounding.
+        self.young = min(_modulus(body) for body in structure.bodies)
         self.scales = Scales(self.length, self.young * self.length, structure.duration)
         bodies = structure.bodies
         shapes = dict[Hashable, CutShape]()

@@ -85,12 +85,7 @@ class SharedOperators:
             has_force,
         )
         if alike not in self._operators:
-            frames = self._frames[on_nodes.nodes]
-            kept = kept_by(traces)
-            condensed = self._condensed_outline(part, frames, kept)
-            if condensed is None:
-                condensed = self._condensed(part, frames, kept)
-            self._operators[alike] = Operator(condensed, traces)
+            self._operators[alike] = self._made(part, on_nodes, traces, alike)
         self._operators[same] = self._operators[alike]
         return self._operators[alike]
 
@@ -124,18 +119,28 @@ class SharedOperators:
             )
         return self._stiffnesses[alike].with_signs(signs)
 
-    def _condensed_outline(
-        self, part: ShapePart, frames: Array, kept: Indices
-    ) -> SchurComplement | None:
-        """Stiffness as of `_condensed`, from that of the outline; None without one.
+    def _made(
+        self,
+        part: ShapePart,
+        on_nodes: PartNodes,
+        traces: Sequence[Trace],
+        alike: Hashable,
+    ) -> Operator:
+        """Operator of a part, that of an earlier structure if it had an equal part.
 
-        There is none where directions are not the axes of the part.
+        A lattice has the outline in common with other parts, if its directions are the
+        axes; `alike` is the key of its rows.
         """
-        if part.outline is None or np.any(frames != np.eye(2)):
-            return None
+        frames = self._frames[on_nodes.nodes]
+        kept = kept_by(traces)
         outline = part.outline
-        key = "outline", part.content, kept.tobytes()
-        return CACHE.get(key, lambda: SchurComplement(outline, kept))
+        if outline is None or np.any(frames != np.eye(2)):
+            return Operator(self._condensed(part, frames, kept), traces)
+        direction = [trace.direction for trace in traces]
+        return CACHE.get(
+            ("operator", alike, content_of(*direction)),
+            lambda: Operator(SchurComplement(outline, kept), traces),
+        )
 
 
 def _rounded(values: Array) -> Array:
