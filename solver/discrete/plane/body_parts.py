@@ -226,10 +226,17 @@ class ShapePart:
 
         Those of a rectangle have the shape (n_rows, n_columns), others (n_nodes,).
         """
+        if self._columns is None:
+            return nodes
+        return nodes.reshape(-1, self._columns)
+
+    @cached_property
+    def _columns(self) -> int | None:
+        """Number of nodes along of a part that is a rectangle of a lattice."""
         shape = self.body.shape
         if isinstance(shape, Lattice) and shape.is_rectangle(self.chosen):
-            return nodes.reshape(-1, shape.columns_of(self.nodes))
-        return nodes
+            return shape.columns_of(self.nodes)
+        return None
 
     @cached_property
     def elements(self) -> Indices:
