@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -176,6 +176,17 @@ class Run:
         return int(np.argmin(np.abs(self.instants - time)))
 
 
+class Extremes(NamedTuple):
+    """A number of the loop over all instants of a run, also those not shown, SI."""
+
+    largest: float
+    """Value that is largest in size."""
+    largest_at: float
+    """First instant at which it is, s."""
+    last: float
+    """Value at the end."""
+
+
 @dataclass(frozen=True, eq=False)
 class Frame:
     """An iterate of a run, for views."""
@@ -192,6 +203,10 @@ class Frame:
     """Displacements of the drawn bodies."""
     loop: Floats
     """Displacement and force of the loop, shape (2, n_instants), SI."""
+    extremes: tuple[Extremes, Extremes]
+    """Largest and last displacement and force of the loop in the whole run."""
+    slips: Floats
+    """Share of all points of surfaces that slip, shape (n_instants,)."""
     history: Mapping[str, Floats]
     """Scalars of every iteration so far, by the names of `solver.latin.Record`; each of
     shape (n_iterations,)."""
