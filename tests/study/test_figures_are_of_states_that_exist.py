@@ -233,6 +233,14 @@ def test_a_block_that_touches_at_a_point_and_that_nothing_presses_has_no_contact
     assert reading("slipped_share")(pressed) > 0.0
 
 
+def test_no_force_has_no_sign() -> None:
+    run = ran("fault", shear_stress=0.0, overpressure=0.0, instants=5, **COARSE)
+    _, force = figures_of(run)
+    for value in (force.largest, reading("force")(run)):
+        assert math.copysign(1.0, value) == 1.0
+        assert value == 0.0
+
+
 def test_removed_names_of_quantities_are_refused_with_the_new_ones() -> None:
     for name, new in (("energy", "dissipation"), ("slipping", "slipped_share")):
         assert name not in QUANTITIES

@@ -209,7 +209,8 @@ class KeyFigure:
     @property
     def largest(self) -> float:
         """Value that is largest in size."""
-        return float(self.values[self.instant])
+        # No force is written as -0.
+        return float(self.values[self.instant]) + 0.0
 
     @property
     def last(self) -> float:
