@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.arrays import Array
 from solver.discrete.structure import Description
 from solver.latin import Status
 from solver.reference.closed_forms import ExactCurve
@@ -108,8 +109,8 @@ class Run:
     settings: Settings
     sentence: str
     """Sentence on the scene and its loads."""
-    instants: Floats
-    """Instants that are shown, shape (n_instants,), s."""
+    instants: Array
+    """Instants that are shown, shape (n_instants,), s; float64, as some lie close."""
     interfaces: Mapping[str, FrictionInterface]
     """All interfaces with friction, by name."""
     geometry: Geometry

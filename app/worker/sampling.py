@@ -115,7 +115,7 @@ class Sampler:
             number=number,
             settings=settings,
             sentence=settings.sentence(),
-            instants=floats(problem.instants[self.columns]),
+            instants=problem.instants[self.columns],
             interfaces=self._interfaces(),
             geometry=self.drawn.geometry,
             across=self.loop.across,
