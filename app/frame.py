@@ -9,11 +9,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.arrays import Array
 from solver.discrete.structure import Description
 from solver.latin import Status
 from solver.reference.closed_forms import ExactCurve
@@ -108,8 +109,8 @@ class Run:
     settings: Settings
     sentence: str
     """Sentence on the scene and its loads."""
-    instants: Floats
-    """Instants that are shown, shape (n_instants,), s."""
+    instants: Array
+    """Instants that are shown, shape (n_instants,), s; float64, as some lie close."""
     interfaces: Mapping[str, FrictionInterface]
     """All interfaces with friction, by name."""
     geometry: Geometry
@@ -176,6 +177,17 @@ class Run:
         return int(np.argmin(np.abs(self.instants - time)))
 
 
+class Extremes(NamedTuple):
+    """A number of the loop over all instants of a run, also those not shown, SI."""
+
+    largest: float
+    """Value that is largest in size."""
+    largest_at: float
+    """First instant at which it is, s."""
+    last: float
+    """Value at the end."""
+
+
 @dataclass(frozen=True, eq=False)
 class Frame:
     """An iterate of a run, for views."""
@@ -192,6 +204,10 @@ class Frame:
     """Displacements of the drawn bodies."""
     loop: Floats
     """Displacement and force of the loop, shape (2, n_instants), SI."""
+    extremes: tuple[Extremes, Extremes]
+    """Largest and last displacement and force of the loop in the whole run."""
+    slips: Floats
+    """Share of all points of surfaces that slip, shape (n_instants,)."""
     history: Mapping[str, Floats]
     """Scalars of every iteration so far, by the names of `solver.latin.Record`; each of
     shape (n_iterations,)."""

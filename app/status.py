@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
-from app.frame import LOCAL, Frame, Selection
+from app.frame import LOCAL, Extremes, Floats, Frame, Selection
 from app.refusals import advice_in_titles
 from app.state import PageState
 from app.units import percent, settled
 from app.widgets import MEANINGS, explained, html
 from solver.files.amounts import number, unit_for
 from solver.latin import Ending
-from solver.study.quantities.finished import KeyFigure, key_figures, slipping_shares
 
 ENDINGS = {
     Ending.CONVERGED: "✓ solved",
@@ -182,20 +180,15 @@ def figures_line(frame: Frame, selection: Selection) -> str:
     figures = {}
     hints = {}
     for figure in _of_loop(frame):
-        value = figure.at(column)
+        value = float(figure.values[column])
         if abs(value) < LEFT * abs(figure.largest):
             value = 0.0
-        figures[figure.title] = _unit_of(figure)(value)
+        figures[figure.title] = figure.in_words(value)
         hints[figure.title] = _over_time(frame, figure)
-    # Springs are next to the surfaces, and neither stick nor slip.
-    springs = []
-    for chain, interface in enumerate(run.interfaces.values()):
-        if interface.is_spring:
-            springs.append(chain)
-    status = frame.deformed.status[~np.isin(run.geometry.chains, springs)]
-    figures["Slips"] = percent(float(slipping_shares(status)[column]))
+    figures["Slips"] = percent(float(frame.slips[column]))
     # Beside the work that the largest force does on the largest displacement.
-    work = float(np.abs(frame.loop).max(axis=1).prod())
+    across, up = frame.extremes
+    work = across.largest * up.largest
     energy = settled(frame.energy, work)
     figures["Energy dissipated"] = unit_for(abs(energy), "J")(energy)
     for title in ("Slips", "Energy dissipated"):
@@ -217,27 +210,43 @@ def _is_lost(frame: Frame) -> bool:
     return frame.status is not None and frame.status.lost_from is not None
 
 
-def _of_loop(frame: Frame) -> list[KeyFigure]:
+class _LoopFigure(NamedTuple):
+    """A number of the loop: values at the shown instants, and of the whole run, SI."""
+
+    title: str
+    unit: str
+    values: Floats
+    extremes: Extremes
+
+    @property
+    def largest(self) -> float:
+        """Value that is largest in size."""
+        return self.extremes.largest
+
+    def in_words(self, value: float) -> str:
+        """A value in the unit of the figure, the same for the whole run."""
+        # Shares are in per cent.
+        if not self.unit:
+            return percent(value)
+        return unit_for(abs(self.largest), self.unit)(value)
+
+
+def _of_loop(frame: Frame) -> list[_LoopFigure]:
     """Key figures of the loop of a frame; displacement of a held side is zero."""
     figures = []
     moved = float(np.nanmax(np.abs(frame.deformed.nodes), initial=0.0))
-    for figure in key_figures((frame.run.across, frame.run.up), frame.loop):
+    axes = frame.run.across, frame.run.up
+    for axis, values, extremes in zip(axes, frame.loop, frame.extremes, strict=True):
+        figure = _LoopFigure(*axis, values, extremes)
         if figure.unit == "m" and settled(figure.largest, moved) == 0.0:
-            figure = replace(figure, values=np.zeros_like(figure.values))
+            nothing = Extremes(0.0, float(frame.run.instants[0]), 0.0)
+            figure = figure._replace(values=np.zeros_like(values), extremes=nothing)
         figures.append(figure)
     return figures
 
 
-def _unit_of(figure: KeyFigure) -> Callable[[float], str]:
-    """Unit of a key figure, the same for the whole run; shares are in per cent."""
-    if not figure.unit:
-        return percent
-    return unit_for(abs(figure.largest), figure.unit)
-
-
-def _over_time(frame: Frame, figure: KeyFigure) -> str:
+def _over_time(frame: Frame, figure: _LoopFigure) -> str:
     """Largest value of a key figure with its instant, and its last value."""
-    instants = frame.run.instants
-    unit = _unit_of(figure)
-    when = unit_for(float(instants[-1]), "s")(float(instants[figure.instant]))
-    return f"largest {unit(figure.largest)} at {when}, last {unit(figure.last)}"
+    largest, largest_at, last = figure.extremes
+    when = unit_for(float(frame.run.instants[-1]), "s")(largest_at)
+    return f"largest {figure.in_words(largest)} at {when}, last {figure.in_words(last)}"

@@ -13,12 +13,18 @@ from bokeh.plotting import figure
 from numpy.typing import ArrayLike
 
 from app.frame import Floats
+from solver.arrays import Array, Indices
 from solver.files.amounts import Unit, unit_for
 
 LONGEST = 16
 """Letters in a line of the title beside a plot: a small plot is no higher."""
 FLOOR = 1e-15
 """Smallest value that a logarithmic axis shows."""
+MOST_CELLS = 401
+"""Largest number of cells of an image along a side, where points are not even."""
+EVEN = 1e-6
+"""Difference of the gaps between points, over their range, up to which they are even:
+positions have seven digits."""
 
 
 class Axis:
@@ -103,12 +109,40 @@ def whole(axis: Any) -> None:
     axis.formatter = NumeralTickFormatter(format="0")
 
 
-def edges(middles: Floats) -> Floats:
-    """Edges of cells of equal size around n ascending points, shape (n + 1,)."""
-    size = float(np.ptp(middles)) / max(len(middles) - 1, 1)
-    if size == 0.0:
-        size = 1.0
-    return np.append(middles - 0.5 * size, middles[-1] + 0.5 * size)
+def edges(middles: Array) -> Array:
+    """Edges of cells around n ascending points, midway between them, (n + 1,)."""
+    gaps = np.diff(middles)
+    if len(gaps) == 0:
+        gaps = np.ones(1)
+    return np.concatenate(
+        [
+            middles[:1] - 0.5 * gaps[0],
+            0.5 * (middles[1:] + middles[:-1]),
+            middles[-1:] + 0.5 * gaps[-1],
+        ]
+    )
+
+
+def even_cells(middles: Array) -> tuple[Array, Indices]:
+    """Equal cells from the first to the last of n ascending points.
+
+    An image has cells of equal size, while points may lie anywhere: they are as large
+    as the smallest gap between two points, as far as `MOST_CELLS` allow.
+
+    Returns
+    -------
+    Edges of all cells, shape (n_cells + 1,), and the index of the point nearest to the
+    middle of each, shape (n_cells,).
+    """
+    gaps = np.diff(middles)
+    span = float(np.ptp(middles))
+    count = len(middles)
+    if count > 2 and np.ptp(gaps) > EVEN * span:
+        # Two points at a break have the same position.
+        smallest = float(gaps[gaps > EVEN * span].min())
+        count = math.ceil(min(span / smallest, MOST_CELLS - 1.0)) + 1
+    places = np.linspace(middles[0], middles[-1], count)
+    return edges(places), np.searchsorted(edges(middles)[1:-1], places)
 
 
 def extent(curves: Iterable[ArrayLike]) -> tuple[float, float]:

@@ -421,7 +421,7 @@ class Thrust(ExtraScene):
         return 0.0
 
     def _show(self, extra: Any, picture: Picture) -> None:
-        largest = float(extra["forces"].max())
+        largest = extra["largest"]
         share = extra["forces"][:, picture.column] / (largest or 1.0)
         is_drawn = share > FAINTEST
         lines = picture.layout.local(extra["lines"][is_drawn, :, :, picture.column])

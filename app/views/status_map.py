@@ -16,7 +16,7 @@ from app.frame import (
     Run,
     Selection,
 )
-from app.views.axis import edges
+from app.views.axis import edges, even_cells
 from app.views.colors import CUT, ERROR, EXACT, GHOST, KEYS, STATUS
 from app.views.parts import hover
 from app.views.view import View, joined
@@ -83,11 +83,13 @@ class StatusMap(View):
     ) -> None:
         """Show the status as an image with cells around points and instants."""
         # The first and the last cell stand out by half a cell.
-        left, right = self.x(edges(interface.positions)[[0, -1]])
-        low, high = self.y(edges(run.instants)[[0, -1]])
+        across, points = even_cells(interface.positions)
+        up, instants = even_cells(run.instants)
+        left, right = self.x(across[[0, -1]])
+        low, high = self.y(up[[0, -1]])
         self.fill(
             "status",
-            image=[fields.status.T],
+            image=[fields.status[np.ix_(points, instants)].T],
             x=[left],
             y=[low],
             dw=[right - left],

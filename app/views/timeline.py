@@ -71,7 +71,7 @@ class Timeline(View):
     def _show_paths(self, run: Run) -> None:
         """Show the paths of a run over time; they stay until the next run."""
         unit = unit_for(float(run.instants[-1]), "s")
-        times = run.instants / np.float32(unit.factor)
+        times = np.float32(run.instants / unit.factor)
         ends = -0.01 * float(times[-1]), 1.01 * float(times[-1])
         # The bounds first: the browser moves ends that lie outside of them.
         self.figure.x_range.update(bounds=ends, start=ends[0], end=ends[1])

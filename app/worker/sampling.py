@@ -9,7 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run
+from app.frame import (
+    Extremes,
+    Floats,
+    Frame,
+    FrictionInterface,
+    InterfaceFields,
+    Run,
+)
 from app.messages import TABLE, Needs
 from app.worker.cells import floats, thinned
 from app.worker.extras import EXTRAS, Sampled
@@ -31,7 +38,11 @@ from solver.scenes.remarks import remarks_on
 from solver.settings.scene import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.cycles import loads_over_time, turning_points
-from solver.study.quantities.finished import FinishedRun
+from solver.study.quantities.finished import (
+    FinishedRun,
+    figures_of,
+    slipping_shares,
+)
 
 MOST_INSTANTS = 401
 MOST_POINTS = 401
@@ -53,8 +64,8 @@ SCALARS = tuple(f.name for f in fields(Record) if f.name not in NO_SCALARS)
 def shown_instants(settings: Settings, count: int) -> Indices:
     """Shown instants of a run, ascending, (n,), of `count` in all.
 
-    They are evenly thinned, and those at which a load turns back or is largest, as key
-    figures are the largest of what is shown.
+    They are evenly thinned, and those at which a load turns back or is largest, so that
+    curves have their corners.
     """
     kept = thinned(count, MOST_INSTANTS)
     if len(kept) == count:
@@ -104,7 +115,7 @@ class Sampler:
             number=number,
             settings=settings,
             sentence=settings.sentence(),
-            instants=floats(problem.instants[self.columns]),
+            instants=problem.instants[self.columns],
             interfaces=self._interfaces(),
             geometry=self.drawn.geometry,
             across=self.loop.across,
@@ -165,7 +176,9 @@ class Sampler:
                 iterate, self._names(needs), with_slip=TABLE in needs.extras
             ),
             deformed=self.drawn.deformed(iterate),
-            loop=self._loop(iterate),
+            loop=floats(np.stack([run.displacement, run.force])[:, self.columns]),
+            extremes=self._extremes(run),
+            slips=floats(self._slips(iterate)),
             history=_scalars(history),
             status=status,
             energy=float(run.dissipated.sum()),
@@ -174,6 +187,24 @@ class Sampler:
             extras=self._extras(iterate, needs),
             readings={name: reading(name)(run) for name in needs.readings},
         )
+
+    def _extremes(self, run: FinishedRun) -> tuple[Extremes, Extremes]:
+        """Extremes of displacement and force of the loop, over all instants."""
+        across, up = [
+            Extremes(
+                figure.largest,
+                float(self.problem.instants[figure.instant]),
+                figure.last,
+            )
+            for figure in figures_of(run)
+        ]
+        return across, up
+
+    def _slips(self, iterate: Iterate) -> Array:
+        """Share of all points of surfaces that slip, at shown instants, (n_shown,)."""
+        # Springs are next to the surfaces, and neither stick nor slip.
+        status = iterate.status[self.problem.contacts.on_surfaces]
+        return slipping_shares(status[:, self.columns])
 
     def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
         known = {name: partial(extra, self._sampled) for name, extra in EXTRAS.items()}

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from app.frame import Floats
 from app.messages import Needs
 from app.worker.cells import NONE, floats
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, largest_size
 from solver.discrete import Problem
 from solver.discrete.contacts import Stacked
 from solver.latin import Iterate
@@ -44,28 +45,31 @@ class Thrusts:
         joints = np.bincount(ends[ends != NONE], minlength=len(self._middles))
         self._is_chain = len(joints) > 2 and joints.max() <= 2
 
-    def of(self, iterate: Iterate, needs: Needs) -> dict[str, Floats]:
+    def of(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
         """Resultant force in every joint, and its point of action.
 
         "lines" go from the middle of one body over the point where the resultant acts
         to the middle of the other, (n_joints, 3, 2, n_shown), m; on a support they end
         there. In a chain of bodies they go from joint to joint. "forces" are their
-        sizes, (n_joints, n_shown), N. "hinges" is 1 where a joint of a chain is a
-        hinge, else 0, (n_joints, n_shown).
+        sizes, (n_joints, n_shown), N, and "largest" the largest of them at any instant
+        of the run. "hinges" is 1 where a joint of a chain is a hinge, else 0,
+        (n_joints, n_shown).
         """
         contacts = self._problem.contacts
         shape = len(contacts), len(self._columns)
         points = np.zeros((len(contacts), 2, len(self._columns)))
         forces = np.zeros(shape)
         hinges = np.zeros(shape)
+        largest = 0.0
         for stacked in contacts.stacks:
             normal, tangential = [
-                iterate.contact_force[numbers][:, self._columns]
-                for numbers in stacked.forces
+                iterate.contact_force[numbers] for numbers in stacked.forces
             ]
             pressed = np.maximum(normal, 0.0)
-            own = self._resultants(stacked, pressed, tangential)
-            forces[stacked.numbers], points[stacked.numbers] = own
+            sizes, places = self._resultants(stacked, pressed, tangential)
+            largest = max(largest, largest_size(sizes))
+            forces[stacked.numbers] = sizes[:, self._columns]
+            points[stacked.numbers] = places[..., self._columns]
             if self._is_chain:
                 status = iterate.status[stacked.points][:, self._columns]
                 found = are_hinges(stacked.law, status != OPEN)
@@ -73,6 +77,7 @@ class Thrusts:
         return {
             "lines": floats(self._lines(points)),
             "forces": floats(forces),
+            "largest": largest,
             "hinges": floats(hinges),
         }
 
@@ -81,8 +86,8 @@ class Thrusts:
     ) -> tuple[Array, Array]:
         """Size, N, and point, m, of the resultants of the joints of a law.
 
-        From pressing and tangential forces of points, (n_points, n_shown), N. Returned
-        are (n_joints, n_shown) and (n_joints, 2, n_shown).
+        From pressing and tangential forces of points, (n_points, n_instants), N.
+        Returned are (n_joints, n_instants) and (n_joints, 2, n_instants).
         """
         problem = self._problem
         law = stacked.law
@@ -136,11 +141,11 @@ class Thrusts:
 
 
 def _shares_of_points(pressed: Array, whole: Array, sizes: Indices) -> Array:
-    """Share of each point in the resultant of its joint, (n_points, n_shown).
+    """Share of each point in the resultant of its joint, (n_points, n_instants).
 
     A resultant acts at the mean of the points by their pressing force, (n_points,
-    n_shown), N; in the middle of a joint that is open. `whole` are the sums of these
-    forces, (n_joints, n_shown), N, `sizes` the numbers of points, (n_joints,).
+    n_instants), N; in the middle of a joint that is open. `whole` are the sums of these
+    forces, (n_joints, n_instants), N, `sizes` the numbers of points, (n_joints,).
     """
     divisor = np.repeat(np.where(whole > 0.0, whole, 1.0), sizes, axis=0)
     is_closed = np.repeat(whole > 0.0, sizes, axis=0)

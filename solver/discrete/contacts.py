@@ -318,7 +318,7 @@ class ContactGroup:
             normal = law.by_point(force[law.normal.component.above])
             tangential = law.by_point(np.abs(force[law.tangent.above]))
             least = RESIDUE * largest_force
-            status[~_carries(normal, tangential, least)] = OPEN
+            status[~carries(normal, tangential, least)] = OPEN
         return status
 
     def _largest_displacement(self, displacement: Array) -> Array:
@@ -331,12 +331,15 @@ class ContactGroup:
         return largest
 
 
-def _carries(normal: Array, tangential: Array, least: float) -> NDArray[np.bool_]:
+def carries(
+    normal: Array, tangential: Array, least: Array | float
+) -> NDArray[np.bool_]:
     """Mask of points of contact that carry more than rounding errors.
 
     Where bodies come apart, or begin to touch, rounding presses at some points. A bond
     that nothing presses carries friction. Pressing and friction forces have the same
-    shape, (n_points, n_instants); forces up to `least` may be rounding.
+    shape, (n_points, n_instants); forces up to `least`, (n_points, 1) or one for all,
+    may be rounding.
     """
     return np.asarray((normal > least) | ((normal > 0.0) & (tangential > least)))
 

@@ -185,7 +185,10 @@ class _Bodies:
 
 
 class _Contacts:
-    """Lines along the contacts at any instant, with fields at their points."""
+    """Lines along the contacts at any instant, with fields at their points.
+
+    A contact of one point, as a spring, is that point.
+    """
 
     def __init__(self, iterate: Iterate) -> None:
         problem = iterate.problem
@@ -205,7 +208,15 @@ class _Contacts:
         self._opens = problem.opens
         self._interfaces = np.repeat(np.arange(len(contacts)) + 1, contacts.sizes)
         joined = np.flatnonzero(np.diff(self._interfaces) == 0)
-        self._lines = np.stack([joined, joined + 1], axis=1)
+        alone = np.setdiff1d(np.arange(contacts.n_points), [joined, joined + 1])
+        cells = {
+            "line": np.stack([joined, joined + 1], axis=1),
+            "vertex": alone[:, None],
+        }
+        # No program reads cells of a kind without any.
+        self._cells = [
+            (kind, corners) for kind, corners in cells.items() if len(corners)
+        ]
 
     def at(self, instant: int) -> meshio.Mesh:
         """Mesh of lines with their fields at an instant."""
@@ -224,7 +235,7 @@ class _Contacts:
             fields["normal_force"] = normal
             fields["pressure"] = normal / self._areas
             fields["gap"] = self._along("opening", instant)
-        return _mesh(self._points, [("line", self._lines)], fields, {})
+        return _mesh(self._points, self._cells, fields, {})
 
     def _along(self, name: str, instant: int) -> Array:
         """Field of all points at an instant, (n_points,)."""

@@ -340,6 +340,16 @@ class Condensation:
         outer = self._force + self._jumps.T @ force
         return np.asarray((self._whole @ deformation - outer)[self._free])
 
+    def inside(self, deformation: Array) -> float:
+        """Largest sum of the sizes of forces inside elements at a node, scaled.
+
+        By displacements without rigid motions, shape (n_dofs, n_instants), scaled.
+        """
+        # Sizes without signs: forces cancel at a degree of freedom, their rounding does
+        # not.
+        forces = abs(self._whole) @ np.abs(deformation)
+        return float(forces.max(initial=0.0))
+
     def rounding(self, deformation: Array, motion: Array, size: float) -> float:
         """Largest unbalanced force by rounding alone, scaled.
 
@@ -356,12 +366,10 @@ class Condensation:
         size
             Largest force, scaled.
         """
-        # Sizes without signs: forces cancel at a degree of freedom, their rounding does
-        # not.
-        inside = abs(self._whole) @ np.abs(deformation)
+        inside = self.inside(deformation)
         moved = self.unit[:, None] * np.abs(self.jump(motion))
         sprung = moved[self.all_rules.compliance > 0.0]
-        left = LEFT_INSIDE * max(inside.max(initial=0.0), sprung.max(initial=0.0))
+        left = LEFT_INSIDE * max(inside, sprung.max(initial=0.0))
         blurred = min(LEFT_INSIDE * moved.max(initial=0.0), BLURRED * size)
         return float(max(left, blurred))
 

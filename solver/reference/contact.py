@@ -11,7 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from solver.arrays import Array, Flags
+from solver.arrays import ROUNDING, Array, Flags
+from solver.discrete.contacts import carries
 from solver.discrete.problem import Problem
 from solver.laws import OPEN
 from solver.reference.assembly import Interrupted, NoReferenceError
@@ -173,6 +174,8 @@ class IncrementalContact:
         slip[condensed.moving] = done.jump
         size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
         blurred = condensed.rounding(deformation, rigid, size)
+        least = ROUNDING * condensed.inside(deformation)
+        is_open = _without_forces(self._rules, forces, least)
         residual = unbalanced
         if size > 0.0:
             residual = unbalanced / size
@@ -183,7 +186,7 @@ class IncrementalContact:
             displacement=(deformation + rigid) * scales.displacement,
             deformation=deformation * scales.displacement,
             contact_force=forces * scales.force,
-            status=_status(self._rules, slip, forces),
+            status=_status(self._rules, slip, forces, is_open),
             residual=float(residual.max(initial=0.0)),
             unbalanced=float(unbalanced.max(initial=0.0)) * scales.force,
             rounding=blurred * scales.force,
@@ -252,17 +255,36 @@ def jumps_in(problem: Problem) -> int:
     return count
 
 
-def _status(rules: Rules, slip: Array, forces: Array) -> States:
+def _without_forces(rules: Rules, forces: Array, least: float) -> Flags:
+    """Mask of the points that are open, (n_points, n_instants); rounding becomes 0.
+
+    Forces of all jumps have the shape (n_forces, n_instants). Those between bodies that
+    do not yield are the rest that balances the forces inside bodies, and up to `least`
+    may be rounding of these; a spring in series tells its force by itself.
+    """
+    tangential = np.flatnonzero(~rules.normal)
+    normal = rules.partner[tangential]
+    smallest = np.where(rules.compliance[normal] > 0.0, 0.0, least)[:, None]
+    touches = carries(forces[normal], np.abs(forces[tangential]), smallest)
+    # A friction force of a known pressure has itself as partner, and never opens.
+    is_open = rules.normal[normal][:, None] & ~touches
+    for components in (normal, tangential):
+        is_rounding = is_open & (np.abs(forces[components]) <= smallest)
+        forces[components] = np.where(is_rounding, 0.0, forces[components])
+    return is_open
+
+
+def _status(rules: Rules, slip: Array, forces: Array, is_open: Flags) -> States:
     """Status of every point, stacked interface by interface, (n_points, n_instants).
 
-    By slips and forces of all jumps, shape (n_forces, n_instants).
+    By slips and forces of all jumps, shape (n_forces, n_instants), and a mask of the
+    points that are open, shape (n_points, n_instants).
     """
     tangential = ~rules.normal
     status = np.sign(slip).astype(np.int8)
     # Friction never drives a slip: one along it is rounding, of a point that stays
     # where it was, at its bound.
     status[slip * forces > 0.0] = 0
-    # A friction force of a known pressure has itself as partner, and never opens.
-    with_normal = rules.normal[rules.partner][:, None]
-    status[with_normal & (forces[rules.partner] <= 0.0)] = OPEN
-    return np.asarray(status[tangential])
+    of_points = status[tangential]
+    of_points[is_open] = OPEN
+    return of_points

@@ -58,13 +58,18 @@ class Refinement:
 
     @property
     def steps(self) -> tuple[float, float]:
-        """Differences from mesh to mesh; zero if all values are equal."""
+        """Differences from mesh to mesh; zero between values that are equal."""
         coarse, middle, fine = self.values
         size = max(abs(value) for value in self.values)
-        # A quantity that no mesh changes has neither order nor error.
-        if max(self.values) - min(self.values) <= EQUAL * size:
-            return 0.0, 0.0
-        return middle - coarse, fine - middle
+        first = middle - coarse
+        second = fine - middle
+        # A quantity that no mesh changes has neither order nor error; where only one of
+        # both steps changes it, the rounding in the other one makes no order.
+        if abs(first) <= EQUAL * size:
+            first = 0.0
+        if abs(second) <= EQUAL * size:
+            second = 0.0
+        return first, second
 
     @property
     def order(self) -> float | None:

@@ -14,7 +14,7 @@ from pictures import boxes_of_words, meet, shown
 from scipy.spatial import Delaunay
 from small_scenes import SMALL
 
-from app.frame import Frame, Selection
+from app.frame import Extremes, Frame, Selection
 from app.lessons.catalogue import CASES
 from app.messages import Needs
 from app.state import PageState, default_settings
@@ -457,7 +457,12 @@ def test_a_side_that_is_held_is_not_moved_during_the_search() -> None:
     frame = ran(arch(displacement=0.0), ends=False)
     moved = frame.deformed.nodes
     rounding = 1e-8 * np.abs(moved).max() * np.ones_like(frame.loop[0])
-    frame = replace(frame, loop=np.stack([rounding, frame.loop[1]]))
+    still = Extremes(float(rounding[0]), 0.0, float(rounding[-1]))
+    frame = replace(
+        frame,
+        loop=np.stack([rounding, frame.loop[1]]),
+        extremes=(still, frame.extremes[1]),
+    )
     line = figures_line(frame, Selection(0.5))
     assert "Movement of the right abutment <b>0 " in line
 

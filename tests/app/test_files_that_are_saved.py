@@ -159,7 +159,7 @@ def test_contact_is_read_again_as_results_and_by_pandas(scene: str) -> None:
             results.values.astype("f4").reshape(shape), fields.friction
         )
         np.testing.assert_array_equal(
-            results.times.reshape(shape)[0].astype("f4"), frame.run.instants
+            results.times.reshape(shape)[0], frame.run.instants
         )
 
 

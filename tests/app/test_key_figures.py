@@ -1,33 +1,87 @@
-"""Key figures of the page are those of the run, however many instants it has."""
+"""Key figures of the page are those of the run, however many instants and points."""
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
 import pytest
 
+from app.frame import Frame, Selection
 from app.messages import Needs
+from app.status import figures_line
+from app.units import percent
+from app.worker.geometry import MOST_POINTS
 from app.worker.sampling import MOST_INSTANTS, Sampler
 from solver.scenes import CATALOGUE
-from solver.study.quantities.finished import figures_of, finished_run, key_figures
+from solver.study.quantities.finished import FinishedRun, figures_of, finished_run
 
 
-def test_a_peak_between_the_instants_that_are_shown_is_shown() -> None:
-    """Of 1000 instants 401 are shown: a narrow peak lay between two of them."""
-    peak = [[0.3, 200.0], [0.3016, 900.0], [0.303, -700.0], [0.31, 0.0]]
-    settings = CATALOGUE["bar"].checked(
-        {
-            "elements": 6,
-            "substructures": 1,
-            "instants": 1001,
-            "load": [[0.0, 0.0], *peak, [1.0, 0.0]],
-        }
-    )
+def shown(scene: str, needs: Needs, **values: Any) -> tuple[FinishedRun, Frame]:
+    """A run, and its frame on the page."""
+    settings = CATALOGUE[scene].checked(values)
     run = finished_run(settings, errors=False, indicators=False)
     sampler = Sampler(run.problem, settings, 1)
-    assert len(sampler.columns) < 1.5 * MOST_INSTANTS < run.problem.n_instants
-    frame = sampler.frame(
-        run.iterate, run.solution.records, run.solution.status, Needs()
-    )
-    shown = key_figures((frame.run.across, frame.run.up), frame.loop)
-    for figure, whole in zip(shown, figures_of(run), strict=True):
-        assert figure.largest == pytest.approx(whole.largest, rel=1e-6)
-        assert figure.last == pytest.approx(whole.last, rel=1e-6)
+    history = run.solution.records
+    frame = sampler.frame(run.iterate, history, run.solution.status, needs)
+    return run, frame
+
+
+PEAK = [[0.3, 200.0], [0.3016, 900.0], [0.303, -700.0], [0.31, 0.0]]
+NARROW: dict[str, Any] = {"instants": 1001, "load": [[0.0, 0.0], *PEAK, [1.0, 0.0]]}
+BETWEEN: dict[str, Any] = {"instants": 701, "friction": 0.0, "body_force": 2000.0}
+"""A peak of a load between the instants that are shown by their number alone, and one
+of a displacement by two loads, where neither of them turns."""
+
+
+@pytest.mark.parametrize("values", [NARROW, BETWEEN])
+def test_a_peak_between_the_instants_that_are_shown_is_told(
+    values: dict[str, Any],
+) -> None:
+    run, frame = shown("bar", Needs(), elements=6, substructures=1, **values)
+    count = len(frame.run.instants)
+    assert count < 1.5 * MOST_INSTANTS
+    assert count < run.problem.n_instants
+    for told, whole in zip(frame.extremes, figures_of(run), strict=True):
+        instants = run.problem.instants
+        assert told == (whole.largest, instants[whole.instant], whole.last)
+    line = figures_line(frame, Selection())
+    assert "largest 900 N" in line
+
+
+def test_the_narrow_peak_of_a_load_is_drawn() -> None:
+    run, frame = shown("bar", Needs(), elements=6, substructures=1, **NARROW)
+    force = figures_of(run)[1]
+    assert frame.loop[1].max() == pytest.approx(force.largest, rel=1e-6)
+
+
+def test_the_share_that_slips_is_of_all_points_and_not_of_those_that_are_drawn() -> (
+    None
+):
+    run, frame = shown("bar", Needs(), elements=300, substructures=1, instants=11)
+    assert len(frame.run.geometry.points) <= MOST_POINTS < run.iterate.status.shape[0]
+    slips = np.mean(np.abs(run.iterate.status) == 1, axis=0)
+    assert frame.slips == pytest.approx(slips, rel=1e-6)
+    line = figures_line(frame, Selection(phase=0.2))
+    assert f"Slips <b>{percent(float(slips[2]))}</b>" in line
+
+
+def test_the_widest_line_of_thrust_is_the_largest_force_of_any_instant() -> None:
+    arch = {"voussoirs": 5, "elements": 2, "live": 3000.0}
+    moves: dict[str, Any] = {
+        "place_load": [[0, 0], [1, 1]],
+        "live_load": [[0, 1], [1, 1]],
+        "instants": 451,
+    }
+    needs = Needs(extras=frozenset({"thrust"}))
+    run, frame = shown("arch", needs, **arch, **moves)
+    assert len(frame.run.instants) < run.problem.n_instants
+    thrust = frame.extras["thrust"]
+    sizes = []
+    for name in run.problem.contacts:
+        fields = run.iterate.contact(name)
+        assert fields.normal_force is not None
+        along = fields.tangential_force.sum(axis=0)
+        sizes.append(np.hypot(fields.normal_force.sum(axis=0), along))
+    assert thrust["largest"] == pytest.approx(np.max(sizes), rel=1e-9)
+    assert thrust["largest"] >= thrust["forces"].max() * (1.0 - 1e-6)

@@ -187,7 +187,7 @@ def test_legends_name_only_what_is_drawn() -> None:
 
 
 def test_the_map_is_the_status_and_is_not_sent_again_when_the_instant_changes() -> None:
-    frame = frames_of("block")[1]
+    frame = frames_of("bar")[1]
     view = view_of(StatusMap, frame)
     status = next(iter(frame.contact.values())).status
     image = view.sources["status"].data["image"][0]
@@ -198,6 +198,25 @@ def test_the_map_is_the_status_and_is_not_sent_again_when_the_instant_changes() 
     assert view.sources["now"].data["y"] == pytest.approx(
         frame.run.instants[[frame.run.column(0.3)]]
     )
+
+
+def test_the_map_has_the_status_of_each_instant_at_its_time() -> None:
+    """Steps are not even, as there is an instant more where a load turns."""
+    turns = [[0.1 + 0.02 * n, 900.0 * (-1) ** n] for n in range(8)]
+    path = [[0.0, 0.0], *turns, [1.0, 0.0]]
+    settings = default_settings("bar").replace(load=path, elements=20, instants=14)
+    frame = frame_of(settings, Needs(), ends=True)
+    view = view_of(StatusMap, frame)
+    run = frame.run
+    steps = np.diff(run.instants)
+    assert steps.max() > 3.0 * steps.min()
+    data = view.sources["status"].data
+    (image,) = data["image"]
+    (low,) = data["y"]
+    (high,) = data["dh"]
+    rows = (run.instants - low) / high * len(image)
+    status = frame.contact[run.interface("")].status
+    assert np.array_equal(image[np.floor(rows).astype(int)], status.T)
 
 
 def test_of_curves_only_what_is_new_is_sent_and_not_each_by_itself() -> None:

@@ -107,6 +107,24 @@ def test_any_interface_of_a_series_is_compared(
     assert figures["distance"] == pytest.approx(0.0, abs=1e-12)
 
 
+def test_a_contact_of_one_point_is_read_again_as_that_point(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    held = [f"--set={side}=clamped" for side in ("left", "right")]
+    mesh = ["--set=elements=2", "--set=elements_up=2", "--set=substructures=1"]
+    load = ["--set=top_normal_load=sine", "--set=instants=5", "--set=gap=flat"]
+    command = ["block", *held, *mesh, *load]
+    path = tmp_path / "run.pvd"
+    main(["run", *command, "--no-reference", "--out", str(path)])
+    (cells,) = meshio.read(tmp_path / "run" / "contacts_0004.vtu").cells
+    assert cells.type == "vertex"
+    assert cells.data.tolist() == [[0]]
+    capsys.readouterr()
+    main(["compare", *command, "--with", str(path), "--json"])
+    figures = json.loads(capsys.readouterr().out)
+    assert figures["distance"] == pytest.approx(0.0, abs=1e-12)
+
+
 @pytest.mark.parametrize(
     ("content", "said"),
     [

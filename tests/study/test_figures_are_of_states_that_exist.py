@@ -19,6 +19,7 @@ from app.state import PageState
 from app.status import OWNER, figures_line, status_line
 from app.worker.sampling import Sampler
 from solver.commands.cli import main
+from solver.laws import OPEN
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE
 from solver.settings.values import SettingError
@@ -210,6 +211,34 @@ def test_a_wall_that_falls_has_no_distance_to_a_measured_loop(
     found = json.loads(printed.out)
     assert (found["distance"], found["distance_given"]) == (None, None)
     assert "no solution" in printed.err
+
+
+@pytest.mark.parametrize("moved", [1e-6, 1e-4])
+def test_a_block_that_touches_at_a_point_and_that_nothing_presses_has_no_contact(
+    moved: float,
+) -> None:
+    """Forces inside elements that move leave rounding where the block touches."""
+    mesh = {"elements": 16, "elements_up": 8, "instants": 21}
+    changes = {**mesh, "top_tangential_displacement": moved}
+    run = ran("block", top_normal_displacement=0.0, **changes)
+    assert run.solution.is_certified
+    assert (run.iterate.status == OPEN).all()
+    assert not run.iterate.contact_force.any()
+    names = "force", "dissipation", "slipped_share", "peak_slip", "contact_width"
+    assert [reading(name)(run) for name in names] == [0.0] * 5
+    # A block that is pressed by a millionth of its shear rubs at that point.
+    pressed = ran("block", top_normal_displacement=-1e-6 * moved, **changes)
+    assert pressed.solution.is_certified
+    assert reading("force")(pressed) > 0.0
+    assert reading("slipped_share")(pressed) > 0.0
+
+
+def test_no_force_has_no_sign() -> None:
+    run = ran("fault", shear_stress=0.0, overpressure=0.0, instants=5, **COARSE)
+    _, force = figures_of(run)
+    for value in (force.largest, reading("force")(run)):
+        assert math.copysign(1.0, value) == 1.0
+        assert value == 0.0
 
 
 def test_removed_names_of_quantities_are_refused_with_the_new_ones() -> None:

@@ -61,6 +61,9 @@ def test_the_finest_value_is_always_inside_the_margin(
 def test_a_singular_corner_shows_no_limit_and_a_jump_no_power() -> None:
     assert "shows no limit" in answer(power(-0.3, 1.0, 0.5), "Pa")
     assert "no power" in answer(Refinement((1.0, 1.0, 0.9), 1), "m")
+    # Rounding in a step is no change: a rope's energy had the power -36.9.
+    rounded = Refinement((1.0, 1.0 - 1e-15, 0.9999), 1)
+    assert "no power" in answer(rounded, "J")
     # It was said to change hardly any more, with a margin of two thirds.
     told = answer(Refinement((12.78, 8.716, 7.938), 1), "J")
     assert "It changed by 4.06 J, then by 0.778 J, which falls faster" in told

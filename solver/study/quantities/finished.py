@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -209,7 +209,8 @@ class KeyFigure:
     @property
     def largest(self) -> float:
         """Value that is largest in size."""
-        return float(self.values[self.instant])
+        # No force is written as -0.
+        return float(self.values[self.instant]) + 0.0
 
     @property
     def last(self) -> float:
@@ -224,22 +225,18 @@ class KeyFigure:
         return 0.0
 
 
-def key_figures(axes: Axes, loop: Iterable[NDArray[Any]]) -> list[KeyFigure]:
-    """Key figures of a loop of shape (2, n_instants), with the names of its axes.
+def figures_of(run: FinishedRun) -> list[KeyFigure]:
+    """Key figures of the loop of a run: of its displacement and of its force.
 
     A displacement has the name `displacement`, a force `force`; other numbers have
     names by their units or titles.
     """
     figures = []
-    for (title, unit), values in zip(axes, loop, strict=True):
+    loop = run.displacement, run.force
+    for (title, unit), values in zip(run.loop.axes, loop, strict=True):
         name = DRIVES.get(title) or OF_UNITS[unit]
-        figures.append(KeyFigure(name, title, unit, np.asarray(values)))
+        figures.append(KeyFigure(name, title, unit, values))
     return figures
-
-
-def figures_of(run: FinishedRun) -> list[KeyFigure]:
-    """Key figures of the loop of a run: of its displacement and of its force."""
-    return key_figures(run.loop.axes, (run.displacement, run.force))
 
 
 def slipping_shares(status: NDArray[np.int8]) -> Array:

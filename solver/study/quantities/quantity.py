@@ -86,9 +86,10 @@ class Quantity:
         given: tuple[float | None, ...] = ()
         if self.parameter is not None:
             given = (self.at,)
-        if self.when is None:
-            return float(self.of(run, *given))
-        return float(self.of(run, self.when(run, *given)))
+        if self.when is not None:
+            given = (self.when(run, *given),)
+        # Nothing is written as -0.
+        return float(self.of(run, *given)) + 0.0
 
 
 def quantity(title: str, unit: str = "", **options: Any) -> Callable[..., Quantity]:
