@@ -102,7 +102,7 @@ def path_table(frame: Frame) -> str:
     description = frame.run.geometry.description
     table = pd.DataFrame({"t, s": description.instants})
     for symbol, values, unit in given_in(description):
-        # Several loads may have the same symbol.
+        # Several loads of a script may have the same name.
         head = unit.titled(symbol)
         table.insert(
             len(table.columns), head, values / unit.factor, allow_duplicates=True
