@@ -51,6 +51,8 @@ TERMS = (
 LEFT = 1e-5
 """Share of its largest value below which a key figure is 0: iterates leave as much
 where nothing acts."""
+SMALL = 1e-3
+"""Number of units below which a key figure would have a power of ten."""
 LOST = "no figures are told, as no solution is found at some instants"
 """Hint over figures in place of which there is a dash."""
 OWNER = "after the linear stage that follows:"
@@ -229,10 +231,20 @@ def _of_loop(frame: Frame) -> list[KeyFigure]:
 
 
 def _unit_of(figure: KeyFigure) -> Callable[[float], str]:
-    """Unit of a key figure, the same for the whole run; shares are in per cent."""
+    """Unit of a key figure, the same for the whole run; shares are in per cent.
+
+    A value too small for it has a smaller one.
+    """
     if not figure.unit:
         return percent
-    return unit_for(abs(figure.largest), figure.unit)
+    unit = unit_for(abs(figure.largest), figure.unit)
+
+    def written(value: float) -> str:
+        if 0.0 < abs(value) < SMALL * unit.factor:
+            return unit_for(abs(value), figure.unit)(value)
+        return unit(value)
+
+    return written
 
 
 def _over_time(frame: Frame, figure: KeyFigure) -> str:
