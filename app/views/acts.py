@@ -19,8 +19,8 @@ from app.views.layout import (
     is_aside,
     is_at_left,
 )
-from app.worker.geometry import PITCH, THICKNESS
 from app.views.words import half_of_line
+from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act, Footing, on_side
 from solver.files.amounts import Unit, unit_for

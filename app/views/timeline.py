@@ -129,8 +129,8 @@ def given_in(description: Description) -> list[tuple[str, Array, Unit]]:
     """Symbol, values, (n_given,), and unit of the tilt and of each load.
 
     The same pressure from both sides is a single load, as are equal loads of bodies of
-    any shape; a load that varies along a side has its largest values. Symbols of several
-    loads have their place beside them.
+    any shape; a load that varies along a side has its largest values. Symbols of
+    several loads have their place beside them.
     """
     given: list[tuple[str, Array, Unit]] = []
     if description.tilt is not None:
