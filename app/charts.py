@@ -42,6 +42,8 @@ HEIGHT = 350
 """Height of a chart, px."""
 LABEL = 34
 """Characters of a line beside an axis."""
+UNPRINTED = "@media print { :host { display: none !important; } }"
+"""Style sheet of what has no meaning on paper."""
 TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
 HOVER: dict[str, Any] = {"tools": ["hover"], "hover_tooltips": "@said"}
 
@@ -232,6 +234,7 @@ def overlay(chart: Chart) -> hv.Overlay:
         # A toolbar that sticks to the axes would lie over a title of their width.
         backend_opts={
             "plot.toolbar.logo": None,
+            "plot.toolbar.stylesheets": [UNPRINTED],
             "plot.toolbar_sticky": False,
             "xaxis.major_label_policy": NoOverlap(),
         },

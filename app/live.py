@@ -66,6 +66,7 @@ class Live:
             self.transport.play_button,
             pn.Column(
                 self._timeline,
+                self.transport.iterate,
                 self.transport.scrub,
                 sizing_mode="stretch_width",
                 margin=0,
@@ -261,7 +262,7 @@ class Card:
         # Beside them is the mark of what the plot shows.
         look = {"margin": (0, 28, 0, 0), **looks("small-tabs")}
         look["sizing_mode"] = "stretch_width"
-        self.tabs = pmui.TabMenu(items=[], **look)
+        self.tabs = pmui.TabMenu(items=[], variant="scrollable", **look)
         self.tabs.param.watch(lambda event: self._choose(event.new or 0), "active")
         self._about = _words("about", margin=0)
         self.view = pn.Column(

@@ -172,13 +172,14 @@ class PageState(param.Parameterized):
         return True
 
     def drag(self, name: str, value: float) -> None:
-        """Run the value of a dragged slider, if the value is allowed.
+        """Run the value of a dragged slider, or say why it is refused.
 
         Only the answer is shown.
         """
         try:
             settings = self.settings.with_change(name, value)
-        except RefusedError:
+        except RefusedError as refused:
+            self.refusal = message_of(refused, self.settings, name, value)
             return
         # The worker begins while the page follows.
         self._start(answer(settings), is_dragged=True)

@@ -49,6 +49,8 @@ TERMS = (
 LEFT = 1e-5
 """Share of its largest value below which a key figure is 0: iterates leave as much
 where nothing acts."""
+SMALL = 1e-3
+"""Number of units below which a key figure would have a power of ten."""
 LOST = "no figures are told, as no solution is found at some instants"
 """Hint over figures in place of which there is a dash."""
 OWNER = "after the linear stage that follows:"
@@ -224,11 +226,15 @@ class _LoopFigure(NamedTuple):
         return self.extremes.largest
 
     def in_words(self, value: float) -> str:
-        """A value in the unit of the figure, the same for the whole run."""
+        """A value in the unit of the figure, the same for the whole run if it is large."""
         # Shares are in per cent.
         if not self.unit:
             return percent(value)
-        return unit_for(abs(self.largest), self.unit)(value)
+        unit = unit_for(abs(self.largest), self.unit)
+        if 0.0 < abs(value) < SMALL * unit.factor:
+            # Too small for it.
+            unit = unit_for(abs(value), self.unit)
+        return unit(value)
 
 
 def _of_loop(frame: Frame) -> list[_LoopFigure]:

@@ -14,7 +14,7 @@ from app.frame import Selection
 from app.server import PAGES
 from app.state import PACES, SEARCH, PageState, answering
 from app.status import iterations
-from app.widgets import button, looks, wrapped
+from app.widgets import PlainText, button, looks, wrapped
 from solver.scenes import CATALOGUE
 
 PLAYED_IN = 6.0
@@ -49,7 +49,7 @@ class Transport:
     """The buttons and sliders to move through a run.
 
     `view` stands in the row above the scene, `play_button` beside the time line, and
-    `scrub` below it.
+    `scrub` below it, under the line `iterate`, which says what is shown.
     """
 
     def __init__(self, state: PageState, document: Any) -> None:
@@ -64,6 +64,8 @@ class Transport:
         self.play_button = _button("play_circle", "Play through time (t)", self.play)
         self.play_button.margin = (10, 2)
         self._pin = _button("push_pin", PIN, state.pin, "of-page")
+        # The label of a slider that follows quickly would be sent back (see `Echoes`).
+        self.iterate = PlainText(margin=0, **looks("iterate"))
         self.scrub = self._make_scrub()
         self._show_scene: Callable[[], None] | None = None
         self._turns = wrapped(css_classes=["turn"])
@@ -331,15 +333,15 @@ class Transport:
             self._show_scene()
 
     def name_iterate(self) -> None:
-        """Write the number of the shown iterate, and of all, at the slider."""
+        """Write the number of the shown iterate, and of all, above the slider."""
         frame = self._state.frame
         if frame.is_followed:
-            self.scrub.label = "Answer"
+            self.iterate.object = "Answer"
         elif frame.is_answer:
-            self.scrub.label = f"Answer after {iterations(frame.iteration)}"
+            self.iterate.object = f"Answer after {iterations(frame.iteration)}"
         else:
             last = self._state.newest.iteration
-            self.scrub.label = f"Iteration {frame.iteration} of {last}"
+            self.iterate.object = f"Iteration {frame.iteration} of {last}"
 
     def _follow(self) -> None:
         """Set the slider to the shown iterate, except after a move by the user."""

@@ -27,6 +27,7 @@ from app.status import figures_line, status_line
 from app.units import unit_of
 from app.views.layout import shape_of
 from app.views.scene import Scene
+from app.views.status_map import StatusMap
 from app.views.timeline import Timeline, given_in
 from app.views.view import View
 from app.widgets import TEMPLATES, download, up_to
@@ -102,7 +103,7 @@ def path_table(frame: Frame) -> str:
     description = frame.run.geometry.description
     table = pd.DataFrame({"t, s": description.instants})
     for symbol, values, unit in given_in(description):
-        # Several loads may have the same symbol.
+        # Several loads of a script may have the same name.
         head = unit.titled(symbol)
         table.insert(
             len(table.columns), head, values / unit.factor, allow_duplicates=True
@@ -357,8 +358,10 @@ def offers(state: PageState, views: Sequence[View]) -> list[Any]:
         "Contact over x and t": lambda: contact_table(state.frame),
         "Loads over t": lambda: path_table(state.frame),
     }
-    # A picture of bodies has no curves, and loads are drawn over their largest values.
-    plots = [view for view in views if not isinstance(view, Scene | Timeline)]
+    # A picture of bodies has no curves, loads are drawn over their largest values, and
+    # the status stands in the table of the contact.
+    pictures = Scene | Timeline | StatusMap
+    plots = [view for view in views if not isinstance(view, pictures)]
     tables |= {view.name: partial(plot_table, view) for view in plots}
     for title, make in tables.items():
         slug = title.lower().replace(" ", "-").replace("/", "-")

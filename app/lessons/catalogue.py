@@ -52,10 +52,17 @@ def settings_of(lesson: Lesson | Case) -> Settings:
 
 
 def plots_of(case: str) -> list[str]:
-    """Names of the plots shown first in a case; empty without a case."""
-    if case in CASES:
-        return list(CASES[case].views)
-    return []
+    """Names of the plots shown first in a case; empty without a case.
+
+    The one with the flag at the known number comes before the others.
+    """
+    if case not in CASES:
+        return []
+    names = list(CASES[case].views)
+    flag = CASES[case].flag
+    if flag is not None:
+        names.insert(0, flag.plot)
+    return list(dict.fromkeys(names))
 
 
 def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:

@@ -19,6 +19,7 @@ from app.views.layout import (
     is_aside,
     is_at_left,
 )
+from app.views.words import half_of_line
 from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act, Footing, on_side
@@ -238,16 +239,18 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
         ends = np.array([arrows.handle, arrows.base[0]])
         outer = ends[(away * ends[:, 0]).argmax()]
         return outer + np.array([10.0 * away, 0.0]), align
+    # Clear of the handle, also in large type.
+    above = max(15.0, half_of_line(layout) + 7.0)
     if is_aside(act):
         shift = [22.0 * away, -16.0]
     elif _has_aside(layout, side):
         # Clear of an arrow along the end of the bodies.
-        shift = [22.0 * away, 15.0]
+        shift = [22.0 * away, above]
     elif act.unit == "m":
         # Clear of the rollers of an end that is moved.
-        shift = [(9.0 + 2.0 * RADIUS) * away, 15.0]
+        shift = [(9.0 + 2.0 * RADIUS) * away, above]
     else:
-        shift = [9.0 * away, 15.0]
+        shift = [9.0 * away, above]
     return arrows.points[-1] + shift, align
 
 

@@ -18,6 +18,7 @@ from solver.files.amounts import Unit, unit_for
 
 LONGEST = 16
 """Letters in a line of the title beside a plot: a small plot is no higher."""
+PERCENT = Unit("%", 0.01)
 FLOOR = 1e-15
 """Smallest value that a logarithmic axis shows."""
 MOST_CELLS = 401
@@ -31,7 +32,7 @@ class Axis:
     """The x or y axis of a figure: a unit for each run, and stable limits.
 
     `title` is without the unit; `unit` is the SI unit of all values that are passed to
-    the axis, empty for numbers.
+    the axis, empty for numbers, "%" for shares.
     """
 
     def __init__(self, plot: figure, side: str, title: str, unit: str = "") -> None:
@@ -74,7 +75,9 @@ class Axis:
             high = max(held_high, high)
         else:
             self._key = key
-            self._unit = unit_for(max(abs(low), abs(high)), self._si)
+            self._unit = PERCENT
+            if self._si != PERCENT.name:
+                self._unit = unit_for(max(abs(low), abs(high)), self._si)
             self._label()
         self._held = (low, high)
         if self._is_log:

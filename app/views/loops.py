@@ -9,7 +9,7 @@ import numpy as np
 
 from app.frame import Floats, Frame, Run, Selection
 from app.views.acts import gapped
-from app.views.axis import whole
+from app.views.axis import PERCENT, whole
 from app.views.colors import (
     BESIDE,
     DISPLACEMENT,
@@ -64,7 +64,7 @@ class HysteresisLoop(View):
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the loop of the iterate, and the instant on it."""
         run = frame.run
-        self.x.rename(*run.across)
+        self.x.rename(*_across(run))
         self.y.rename(*run.up)
         reference = NOTHING
         if run.reference_loop is not None:
@@ -90,6 +90,12 @@ class HysteresisLoop(View):
         self.draw("beside", *beside, source)
         self.draw("now", *frame.loop[:, [run.column(selection.phase)]])
         self.show_flag(frame)
+
+
+def _across(run: Run) -> tuple[str, str]:
+    """Title and unit of a loop's axis across; shares, as strain, are in per cent."""
+    title, unit = run.across
+    return title, unit or PERCENT.name
 
 
 def _ghost_of(run: Run, ghost: Frame | None) -> Floats:
@@ -155,7 +161,7 @@ class Cycles(CyclePlot):
         super()._show(cycles, frame, selection)
         run = frame.run
         loop = frame.loop
-        self.x.rename(*run.across)
+        self.x.rename(*_across(run))
         self.y.rename(*run.up)
         self.x.hold(frame.stage, loop[0], margin=0.08)
         self.y.hold(frame.stage, loop[1], margin=0.08)

@@ -255,14 +255,16 @@ class Scene(View):
         run = frame.run
         can_open = any(each.strength is None for each in run.interfaces.values())
         self.show("open", can_open)
-        note = f"displacement × {number(self._factor)}"
+        notes = []
+        if self._factor:
+            notes.append(f"displacement × {number(self._factor)}")
         is_waiting = not self.state.running and not frame.is_answer
         if is_waiting and not self.is_bare:
             # A phone has room for one of both notes.
-            note += f"; {STAGES[stage]}"
+            notes.append(STAGES[stage])
         elif run.geometry.description.height is None:
-            note += ", thickness not to scale"
-        self.show("note", note)
+            notes.append("thickness not to scale")
+        self.show("note", "; ".join(notes))
         arrangement = []
         if layout.angle or not layout.key_rows:
             arrangement = ["column"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from itertools import zip_longest
 from typing import Any
 
@@ -16,7 +17,7 @@ from app.views.layout import is_equal, is_opposite
 from app.views.parts import bare
 from app.views.view import View
 from solver.arrays import Array
-from solver.discrete.structure import Description
+from solver.discrete.structure import Act, Description
 from solver.files.amounts import Unit, number, unit_for
 
 PATHS = {"first": FORCE, "second": "#7A7A7A", "third": "#A0A0A0", "fourth": "#56B4E9"}
@@ -128,17 +129,31 @@ def given_in(description: Description) -> list[tuple[str, Array, Unit]]:
     """Symbol, values, (n_given,), and unit of the tilt and of each load.
 
     The same pressure from both sides is a single load, as are equal loads of bodies of
-    any shape; a load that varies along a side has its values in the middle.
+    any shape; a load that varies along a side has its largest values. Symbols of
+    several loads have their place beside them.
     """
     given: list[tuple[str, Array, Unit]] = []
     if description.tilt is not None:
         given.append(("slope", np.degrees(description.tilt), Unit("°")))
-    for index, act in enumerate(description.acts):
-        before = description.acts[:index]
-        if any(is_opposite(act, other) or is_equal(act, other) for other in before):
-            continue
+    acts: list[Act] = []
+    for act in description.acts:
+        if not any(is_opposite(act, other) or is_equal(act, other) for other in acts):
+            acts.append(act)
+    counts = Counter(act.symbol for act in acts)
+    for act in acts:
+        symbol = act.symbol
+        if counts[symbol] > 1:
+            symbol = f"{symbol} ({_place(act)})"
         values = act.values
         if values.ndim > 1:
-            values = values[len(values) // 2]
-        given.append((act.symbol, values, unit_of(act)))
+            values = values[np.abs(values).max(axis=1).argmax()]
+        given.append((symbol, values, unit_of(act)))
     return given
+
+
+def _place(act: Act) -> str:
+    """Name of the side or body where a load acts, without its direction or number."""
+    place = act.where
+    for end in (" along ", " on "):
+        place = place.partition(end)[0]
+    return place.removesuffix(" x").removesuffix(" y")

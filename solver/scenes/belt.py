@@ -333,7 +333,7 @@ class BeltSettings(PlaneSettings):
             self.size_or_table("pull_load"),
             f"tensions of both ends of which none is more than {ratio:.6g} times the "
             "other, at any instant: more no friction carries",
-            "lower it, take more turns, friction or tail force, or move the end",
+            "lower it, raise wrap, tail_force or friction, or move the end",
         )
 
     def structure(self) -> Band:

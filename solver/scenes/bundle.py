@@ -230,7 +230,7 @@ class BundleSettings(PlaneSettings):
                 "young",
                 "wires whose contacts are narrow beside their radius",
                 f"half of a contact is {share:.2g} of the radius, and at most "
-                f"{plain(WIDEST / WIDER)} is modelled: raise it, or press less",
+                f"{plain(WIDEST / WIDER)} is modelled: raise it, or lower press",
             )
 
     @cached_property

@@ -194,7 +194,8 @@ def _distance(words: str, solutions: Array) -> Finding:
     apart = np.linalg.norm(solutions - solutions[0], axis=1)
     multi, mono = apart[1:] / np.linalg.norm(solutions[0])
     return Finding(
-        f"Error of {words} at t = 0.5 s: {multi:.0%} multiscale, {mono:.0%} monoscale.",
+        f"Error of {words} at t = 0.5 s: {100.0 * multi:.0f} % multiscale, "
+        f"{100.0 * mono:.0f} % monoscale.",
         bool(mono >= GAIN * multi),
     )
 
@@ -298,9 +299,10 @@ def figure_7(runs: PaperRuns) -> PaperFigure:
     of_displacement = displacement.modes_for(0.01)
     of_force = force.modes_for(0.01)
     reducible = Finding(
-        f"The first 1, 2, 3 modes leave {left[1]:.1%}, {left[2]:.2%}, {left[3]:.2%} "
-        f"of the displacement; 1 % takes {of_displacement} modes, where the friction "
-        f"force takes {of_force} of its {len(force.values)}.",
+        f"The first 1, 2, 3 modes leave {100.0 * left[1]:.1f} %, "
+        f"{100.0 * left[2]:.2f} %, {100.0 * left[3]:.2f} % of the displacement; 1 % "
+        f"takes {of_displacement} modes, where the friction force takes {of_force} of "
+        f"its {len(force.values)}.",
         bool(left[3] <= 0.01),
     )
     panel = Panel("SVD of the converged displacement", PLACE, MODE, curves)

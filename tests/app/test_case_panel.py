@@ -19,15 +19,16 @@ from app.lessons.catalogue import (
     KINDS,
     LESSONS,
     PENDING,
+    plots_of,
     readings_of,
     settings_of,
 )
 from app.lessons.guide import Guide
 from app.link import query_of, read
-from app.live import Card
+from app.live import Card, on_top
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
-from app.views.catalogue import CARDS
+from app.views.catalogue import CARDS, LARGE_CARDS
 from app.views.scene import Scene
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
@@ -138,7 +139,20 @@ def sampled(case: Case) -> Frame:
     return runner.frame(Needs(extras=frozenset({"axial force", "cycles"})))
 
 
-@pytest.mark.parametrize("name", ["pile", "lap-joint", "pull-out", "fault"])
+@each
+def test_a_case_opens_with_the_plot_of_its_flag_in_front(case: Case) -> None:
+    state = PageState(settings_of(case), case=case.name)
+    if case.flag is not None:
+        assert plots_of(case.name)[0] == case.flag.plot
+        (group,) = (group for group in LARGE_CARDS if KINDS[case.flag.plot] in group)
+        offered = [kind for kind in group if kind.applies(state.settings)]
+        state.plots = plots_of(case.name)
+        assert offered[on_top(offered, state)].name == case.flag.plot
+
+
+@pytest.mark.parametrize(
+    "name", ["pile", "lap-joint", "pull-out", "fault", "church-arch"]
+)
 def test_the_known_number_is_a_flag_on_its_plot_until_the_case_is_changed(
     name: str,
 ) -> None:

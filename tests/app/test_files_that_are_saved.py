@@ -35,6 +35,7 @@ from app.state import PageState, default_settings
 from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
 from app.views.scene import Scene
+from app.views.status_map import StatusMap
 from app.views.timeline import Timeline
 from app.views.view import View
 from app.worker.references import ReferenceCache
@@ -227,8 +228,12 @@ def test_the_dialog_offers_a_file_of_each_plot_in_sight() -> None:
         "slipfront-bar.py",
         "slipfront-bar-all-iterations.csv",
     } <= {*names}
-    assert sum(name.endswith(".csv") for name in names) == 2 + sum(
-        not isinstance(view, Scene) for view in views
-    )
+    tables = {name for name in names if name.endswith(".csv")}
+    pictures = Scene | Timeline | StatusMap
+    curves = {view.name for view in views if not isinstance(view, pictures)}
+    assert len(tables) == 3 + len(curves)
+    # What is drawn there is in the table of the contact.
+    assert "slipfront-bar-contact-over-x-and-t.csv" in tables
+    assert "slipfront-bar-stick-and-slip.csv" not in tables
     for offer in offered[1:4]:
         assert offer.callback().getvalue()

@@ -276,3 +276,13 @@ def test_what_is_dragged_does_not_fade(answer: Frame) -> None:
     state = PageState(answer.run.settings, frame=answer)
     state.drag("peak", 500.0)
     assert not state.is_stale
+
+
+def test_why_a_dragged_value_is_refused_is_told_until_one_is_allowed() -> None:
+    state = PageState(default_settings("belt"))
+    present = state.settings
+    state.drag("pull", 5000.0)
+    assert "Pull above the tail force cannot be 5 kN" in state.refusal
+    assert state.settings is present
+    state.drag("pull", 1000.0)
+    assert not state.refusal

@@ -55,6 +55,20 @@ def test_words_beside_a_body_have_room_on_a_projector() -> None:
     assert x > picture.page(picture.nodes)[:, 0].max()
 
 
+def test_on_a_projector_a_pressure_is_named_beside_its_own_arrows() -> None:
+    """In a low picture the force's word had its place, and it stood at the force."""
+    frame = frame_of(small("bar"))
+    view = shown(frame, 0.75)
+    view.magnify("22px")
+    view.lay_out(816.0, 155.0)
+    view.update(frame, Selection(0.75), None)
+    picture = picture_of(view)
+    words = view.sources["words"].data
+    heights = dict(zip((text[0] for text in words["text"]), words["y"], strict=True))
+    (force,) = (each for each in picture.arrows if each.act.symbol == "F")
+    assert heights["p"] > heights["F"] > picture.page(force.handle)[1]
+
+
 def test_words_of_large_type_lie_on_no_arrow(frame: Frame, scene: Scene) -> None:
     scene.magnify("28px")
     scene.lay_out(560.0, 400.0)

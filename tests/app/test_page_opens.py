@@ -162,7 +162,7 @@ def test_the_slider_names_the_iterate_of_the_status_line(document: Document) -> 
         assert found, words
         assert last < int(found[1]) == state.newest.iteration
         last = int(found[1])
-        assert page._live.transport.scrub.label == f"Iteration {last} of {last}"
+        assert page._live.transport.iterate.object == f"Iteration {last} of {last}"
 
 
 @pytest.mark.usefixtures("orders", "document")

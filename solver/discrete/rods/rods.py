@@ -376,8 +376,10 @@ class Rods:
             values = self.strain[np.abs(self.strain).max(axis=1).argmax()]
             yield Act("body strain", "ε₀", on_side("body", []), right, values, "")
         if self.settlement is not None:
-            places = on_side("bottom", SHOWN)
-            yield Act("bottom x", "s", places, right, self.settlement[shown], "m")
+            # At both ends, too: of a pile the largest settlement is that of its head.
+            shares = np.linspace(0.0, 1.0, len(SHOWN))
+            settled = self.settlement[np.rint(shares * self.elements).astype(np.intp)]
+            yield Act("bottom x", "s", on_side("bottom", shares), right, settled, "m")
         highest = self.strengths.max(axis=1)
         is_rubbing = np.interp(SHOWN, self.nodes / self.length, highest) > 0.0
         if self.pressure is not None and is_rubbing.any():

@@ -27,7 +27,7 @@ from solver.study.quantities.finished import (
 )
 from solver.study.quantities.quantity import CYCLE, Parameter, Quantity, quantity
 
-AT = Parameter(" after {:.0%} of the interval", (0.0, 1.0))
+AT = Parameter(" after a share {:g} of the interval", (0.0, 1.0))
 SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
 ENDS: tuple[Literal["left"], Literal["right"]] = ("left", "right")
 UNLOADED = 1e-3
