@@ -126,8 +126,11 @@ def server(tmp_path_factory: pytest.TempPathFactory, proxy: Proxy) -> Iterator[S
         f"--allow-websocket-origin=localhost:{each}" for each in (port, proxy.port)
     ]
     quick = ("--unused-session-lifetime", "8000", "--check-unused-sessions", "500")
+    # As `slipfront serve` has it: on a busy machine a page is five minutes old when its
+    # network breaks, and by default could not come back.
+    patient = ("--session-token-expiration", "86400")
     with serving(
-        tmp_path_factory.mktemp("server") / "log", port, *origins, *quick
+        tmp_path_factory.mktemp("server") / "log", port, *origins, *quick, *patient
     ) as made:
         proxy.target = made.port
         yield made

@@ -179,12 +179,21 @@ def go(page: Page, query: str) -> None:
 
 def status(page: Page) -> Locator:
     """The status line."""
-    return page.locator(".status div").first
+    return inside(page, ".status")
 
 
 def figures(page: Page) -> Locator:
     """The key figures at the selected instant."""
-    return page.locator(".figures div").first
+    return inside(page, ".figures")
+
+
+def inside(page: Page, selector: str) -> Locator:
+    """The first block in the element of a selector.
+
+    For one selector of both, Playwright climbs from each block of the page to the root:
+    a look takes twice as long, and whoever waits looks again and again.
+    """
+    return page.locator(selector).locator("div").first
 
 
 def iteration(page: Page) -> int:

@@ -23,6 +23,7 @@ from pages import (
     field,
     figures,
     go,
+    inside,
     is_solved,
 )
 from playwright.sync_api import Browser, Page, expect
@@ -231,7 +232,7 @@ def test_nothing_runs_that_a_file_says_or_is_called_nor_in_the_page_taken_away(
     page: Page, tmp_path: Path
 ) -> None:
     open_files(page)
-    said = page.locator(".line div").first
+    said = inside(page, ".line")
     with watched(page):
         for number, (name, text) in enumerate(HOSTILE.items()):
             folder = tmp_path / str(number)

@@ -18,6 +18,7 @@ from pages import (
     figures,
     go,
     holds,
+    inside,
     is_solved,
     iteration,
     slider,
@@ -203,7 +204,7 @@ def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(
     page: Page,
 ) -> None:
     first, *others = CATALOGUE
-    sentence = page.locator(".sentence div").first
+    sentence = inside(page, ".sentence")
     go(page, f"?scene={first}&{ANSWER}")
     expect(sentence).to_contain_text("steel bar")
     told = [sentence.inner_text()]
