@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 import panel_material_ui as pmui
+import param
 
 from app.browser import Echoes, linked, linked_to
 from app.frame import Selection
@@ -334,12 +335,15 @@ class Transport:
         """Write the number of the shown iterate, and of all, at the slider."""
         frame = self._state.frame
         if frame.is_followed:
-            self.scrub.label = "Answer"
+            label = "Answer"
         elif frame.is_answer:
-            self.scrub.label = f"Answer after {iterations(frame.iteration)}"
+            label = f"Answer after {iterations(frame.iteration)}"
         else:
             last = self._state.newest.iteration
-            self.scrub.label = f"Iteration {frame.iteration} of {last}"
+            label = f"Iteration {frame.iteration} of {last}"
+        # Panel would set the name by itself, in a message of its own.
+        with param.edit_constant(self.scrub):
+            self.scrub.param.update(label=label, name=label)
 
     def _follow(self) -> None:
         """Set the slider to the shown iterate, except after a move by the user."""
