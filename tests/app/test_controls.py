@@ -260,9 +260,8 @@ def test_controls_that_do_nothing_here_are_not_made_or_hidden() -> None:
     peak, *others = fields()
     assert len(controls.view.select(pmui.TextInput)) == 1 + len(others)
     # It comes in its place, and may go and come back.
-    for load in ("random", "sine", "random"):
+    for load, seed in (("random", ["Seed"]), ("sine", []), ("random", ["Seed"])):
         state.change(load=load)
-        seed = ["Seed"] if load == "random" else []
         assert fields() == [peak, *seed, *others]
 
 
