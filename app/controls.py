@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import defaultdict
 from collections.abc import Iterable
 from functools import partial
 from typing import Any
@@ -353,7 +352,6 @@ class Controls:
         self._show_scene = linked(
             self._scene, state, lambda: state.settings.scene, self._choose_scene
         )
-        self._chief = pn.Column(margin=0)
         self._groups = pmui.Accordion(
             margin=(10, 0),
             width=WIDTH,
@@ -363,13 +361,12 @@ class Controls:
             **looks("groups"),
         )
         self._groups.param.watch(lambda event: self._open(), "active")
-        self.view = pn.Column(
-            self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12)
-        )
-        self._spacers = defaultdict(partial(pn.Spacer, height=0))
+        self.view = pmui.Column(self._scene, self._groups, width=WIDTH, margin=(4, 12))
         self._files: pn.Column | None = None
         self._built = ""
         self._titles: list[str] = []
+        self._chief: list[str] = []
+        self._made: dict[str, SettingControl] = {}
         state.param.watch(lambda event: self.update(), "settings")
         self.update()
 
@@ -395,34 +392,49 @@ class Controls:
             else:
                 for control in self._controls:
                     control.update()
+                self._complete()
 
     def _build(self) -> None:
         settings = self._state.settings
         self._built = settings.scene
         self._show_scene()
         self._scene.label = settings.title
-        chief, groups = _groups_of(type(settings))
-        self._controls = [SettingControl(name, self._state) for name in chief]
-        self._chief[:] = views_of(self._controls)
+        self._controls = []
+        self._made = {}
+        self._chief, groups = _groups_of(type(settings))
+        self._complete()
         # The numbers of open groups would mean groups of the scene before. Files alone
         # stay open: settings that a file brings with their scene have a message.
         has_files = FILES in [self._titles[number] for number in self._groups.active]
         self._groups.active = []
         self._titles = [*groups, FILES]
-        # Each group is a spacer until it is opened: it costs a page less than a column,
-        # and nothing in another scene.
+        # Each group is a spacer until it is opened: it costs a page less than a column.
         self._closed = dict(enumerate([*groups.items(), (FILES, [])]))
-        self._groups[:] = [
-            (title, self._spacers[number])
-            for number, (title, _) in self._closed.items()
+        # A title that is given beside a group costs a pane that nobody sees. The names
+        # of groups are read where their number changes.
+        self._groups.objects = []
+        self._groups.objects = [
+            pn.Spacer(name=title, height=0) for title in self._titles
         ]
         if has_files:
             self._groups.active = [len(groups)]
 
+    def _complete(self) -> None:
+        """Make the main controls that apply; others would cost each page their time."""
+        settings = self._state.settings
+        missing = [name for name in self._chief if name not in self._made]
+        new = [name for name in missing if settings.applies(name)]
+        for name in new:
+            self._made[name] = SettingControl(name, self._state)
+            self._controls.append(self._made[name])
+        if new:
+            made = [self._made[name] for name in self._chief if name in self._made]
+            self.view[1:-1] = views_of(made)
+
     def _open(self) -> None:
         """Build groups that are opened for the first time."""
         for number in self._closed.keys() & set(self._groups.active):
-            title, names = self._closed.pop(number)
+            _, names = self._closed.pop(number)
             if names:
                 controls = [SettingControl(name, self._state) for name in names]
                 self._controls += controls
@@ -431,7 +443,9 @@ class Controls:
                 if self._files is None:
                     self._files = files_panel(self._state, WIDTH)
                 view = self._files
-            self._groups[number] = (title, view)
+            views = list(self._groups)
+            views[number] = view
+            self._groups.objects = views
 
 
 def views_of(controls: Iterable[SettingControl]) -> list[Any]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from html import escape
 from pathlib import Path
 from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
+from panel.models import HTML
 
 from app.browser import Display
 from app.messages import TABLE
@@ -39,11 +41,12 @@ class Live:
     def __init__(self, state: PageState, document: Any) -> None:
         self.state = state
         self._document = document
-        self._status = _words("status", margin=(4, 6), styles={"flex": "1 1 240px"})
+        styles = {"flex": "1 1 240px"}
+        self._status = _changing("status", margin=(4, 6), styles=styles)
         self._sentence = PlainText(
             css_classes=["sentence"], stylesheets=[STYLE], margin=(0, 8)
         )
-        self._figures = _words("figures")
+        self._figures = _changing("figures", margin=(0, 8))
         self._views: list[View] = [Scene(state), Timeline(state)]
         self._known: dict[type[View], View] = {}
         self._cards: list[Card] = []
@@ -235,13 +238,15 @@ class Live:
             self._plots.css_classes = roles
         self.look()
 
+    @pn.io.hold()
     def _write(self) -> None:
         """Set all words on the run to those of the frame: status, figures, sentence."""
         frame = self.state.frame
-        self._status.object = status_line(self.state)
+        self._status.text = escape(status_line(self.state))
         if frame is not None:
             self.transport.name_iterate()
-            self._figures.object = figures_line(frame, self.state.selection)
+            text = figures_line(frame, self.state.selection)
+            self._figures.text = escape(text)
             sentence = frame.run.sentence
             if self.state.trade_case is not None:
                 sentence = self.state.trade_case.sentence_on(sentence)
@@ -264,7 +269,7 @@ class Card:
         look["sizing_mode"] = "stretch_width"
         self.tabs = pmui.TabMenu(items=[], variant="scrollable", **look)
         self.tabs.param.watch(lambda event: self._choose(event.new or 0), "active")
-        self._about = _words("about", margin=0)
+        self._about = pn.pane.HTML(css_classes=["about"], stylesheets=[STYLE], margin=0)
         self.view = pn.Column(
             self.tabs, sizing_mode="stretch_both", min_height=170, margin=0
         )
@@ -369,8 +374,10 @@ def column(role: str, *parts: Any) -> pn.Column:
     )
 
 
-def _words(role: str, **more: Any) -> pn.pane.HTML:
-    """A pane of words, which tests and style sheets know by its role."""
-    return pn.pane.HTML(
-        css_classes=[role], stylesheets=[STYLE], **{"margin": (0, 8), **more}
-    )
+def _changing(role: str, **look: Any) -> HTML:
+    """Words that change with each picture, which tests and style sheets know by a role.
+
+    It is the model of Panel's pane, of which all properties would be set each time; the
+    browser takes its text as escaped.
+    """
+    return HTML(css_classes=[role], stylesheets=[STYLE], disable_math=True, **look)

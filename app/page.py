@@ -167,12 +167,9 @@ class Page:
         whenever one widget in it is mounted, or changes its size.
         """
         self.template.param.update(
-            sidebar=[pmui.Column(self._controls.view, margin=0)],
-            header=[pmui.Row(self._header(), margin=0, sizing_mode="stretch_width")],
-            main=[
-                pmui.Column(self._main, margin=0, sizing_mode="stretch_width"),
-                self._dialogs,
-            ],
+            sidebar=[self._controls.view],
+            header=[self._header()],
+            main=[pmui.Column(self._main, margin=0, sizing_mode="stretch_width")],
         )
         self._live.prepare(kinds_beside(self.state))
 
@@ -226,7 +223,7 @@ class Page:
         PAGES.opening.discard(self.state)
         PAGES.leave()
 
-    def _header(self) -> pn.Row:
+    def _header(self) -> pmui.Row:
         actions = {
             "Lessons": ("school", lambda event: self._guide.offer("lesson")),
             "Cases": ("cases", lambda event: self._guide.offer("case")),
@@ -240,10 +237,11 @@ class Page:
             value=self.state.tab,
             size="small",
             margin=(7, 8, 0, 8),
+            # All others stand at the other end.
+            styles={"margin-right": "auto"},
             **looks("in-header"),
         )
         linked_to(self.state, "tab", tabs)
-        space = pn.layout.HSpacer()
         # A phone has room for the first button: the others are in a list there.
         buttons = []
         roles = ["in-header"]
@@ -265,15 +263,8 @@ class Page:
             margin=0,
             **looks("in-header", "of-phone"),
         )
-        return pn.Row(
-            tabs,
-            space,
-            *buttons,
-            more,
-            AtOnce(),
-            sizing_mode="stretch_width",
-            align="center",
-        )
+        parts = [tabs, *buttons, more, AtOnce()]
+        return pmui.Row(*parts, margin=0, sizing_mode="stretch_width")
 
     def _present(self) -> None:
         """Switch between the view for a projector and the normal one."""
@@ -300,6 +291,8 @@ class Page:
         """Put a dialog on the page when the dialog is first opened."""
         if event.obj not in self._dialogs:
             self._dialogs.append(event.obj)
+        if self._dialogs not in self.template.main:
+            self.template.main = [*self.template.main, self._dialogs]
 
     def _take_away(self) -> None:
         """Open the dialog with the link to the page and files to save."""

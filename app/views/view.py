@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 from bokeh import models
-from bokeh.core.properties import value
+from bokeh.core.properties import validate, value
 from bokeh.events import LegendItemClick
 from bokeh.models import (
     AllIndices,
@@ -29,6 +29,7 @@ from bokeh.models import (
     UnionRenderers,
 )
 from bokeh.plotting import figure
+from bokeh.settings import settings
 from numpy.typing import ArrayLike
 
 from app.frame import Floats, Frame, Selection
@@ -139,7 +140,10 @@ class View:
             "selection_policy": UnionRenderers(),
         }
         self._filter = AllIndices()
-        self.make()
+        # Bokeh checks each value, and each default that it replaces, if it checks
+        # documents (`lighten`, `server.py`): a third of the time of a figure.
+        with validate(settings.perform_document_validation()):
+            self.make()
         self._figure.html_attributes = {"role": "figure", "aria-label": self.name}
         # A size that was asked for before there was a figure.
         size = self._type

@@ -11,8 +11,9 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 import pytest
+from panel.models.esm import ReactComponent
 
-from app.controls import POINTS, Controls, SettingControl, _groups_of
+from app.controls import FILES, POINTS, Controls, SettingControl, _groups_of
 from app.files.points import CurveDialog
 from app.messages import Start
 from app.refusals import advice_in_titles
@@ -248,13 +249,20 @@ def test_a_slider_ends_where_another_setting_has_it_end() -> None:
     assert control.slider.end == state.settings.largest_counts["broken"]
 
 
-def test_controls_that_do_nothing_here_are_hidden() -> None:
+def test_controls_that_do_nothing_here_are_not_made_or_hidden() -> None:
     state = of_scene("bar")
     controls = Controls(state)
-    seed = next(control for control in controls._controls if control.name == "seed")
-    assert not any(view.visible for view in seed.views)
-    state.change(load="random")
-    assert all(view.visible for view in seed.views)
+
+    def fields() -> list[str]:
+        made = controls.view.select(pmui.TextInput)
+        return [field.label for field in made if field.visible]
+
+    peak, *others = fields()
+    assert len(controls.view.select(pmui.TextInput)) == 1 + len(others)
+    # It comes in its place, and may go and come back.
+    for load, seed in (("random", ["Seed"]), ("sine", []), ("random", ["Seed"])):
+        state.change(load=load)
+        assert fields() == [peak, *seed, *others]
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)
@@ -272,11 +280,12 @@ def test_chief_settings_and_groups_are_all_that_have_several_values(scene: str) 
 def test_groups_are_built_when_they_are_opened_and_hold_all_that_is_not_chief() -> None:
     controls = Controls(of_scene("incline"))
     chief, groups = _groups_of(type(defaults("incline")))
-    assert [control.name for control in controls._controls] == chief
+    made = [control.name for control in controls._controls]
+    assert made == [name for name in chief if defaults("incline").applies(name)]
     accordion = controls._groups
     accordion.active = list(range(len(accordion)))
     shown = [control.name for control in controls._controls]
-    assert sorted(shown) == sorted([*chief, *chain.from_iterable(groups.values())])
+    assert sorted(shown) == sorted([*made, *chain.from_iterable(groups.values())])
 
 
 def test_controls_out_of_sight_are_made_once_they_are_opened() -> None:
@@ -297,16 +306,18 @@ def test_controls_out_of_sight_are_made_once_they_are_opened() -> None:
     assert shown["peak"].field.value != current
 
 
-def test_groups_of_another_scene_take_the_places_of_the_closed_ones() -> None:
+def test_each_group_has_its_title_and_no_pane_beside_it() -> None:
     state = of_scene("bar")
     controls = Controls(state)
-    groups = controls._groups
-    groups.active = [0]
-    before = list(groups)
-    state.choose_scene("block")
-    assert len(groups) > len(before)
-    is_kept = [old is new for old, new in zip(before, groups, strict=False)]
-    assert is_kept == [False] + [True] * (len(before) - 1)
+    root = controls.view.get_root()
+    for scene in ("bar", "block", "incline"):
+        state.choose_scene(scene)
+        _, groups = _groups_of(type(defaults(scene)))
+        controls._groups.active = [0]
+        (accordion,) = root.select({"type": ReactComponent, "name": "Accordion"})
+        assert accordion.data._names == [*groups, FILES]
+        assert len(accordion.data.objects) == len(groups) + 1
+        assert not accordion.data._headers
 
 
 def test_a_message_on_settings_of_another_scene_stays_in_sight() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 from dataclasses import replace
 from itertools import chain, product
 from typing import Any
@@ -12,6 +14,7 @@ from bokeh.core.serialization import Serializer
 from bokeh.document import Document
 from bokeh.events import Tap
 from bokeh.models import DataRange1d, LogScale
+from bokeh.settings import settings
 from frames import frame_of
 from views import (
     MORE,
@@ -40,6 +43,28 @@ from app.views.status_map import StatusMap
 from app.views.timeline import Timeline
 from app.views.view import View
 from solver.study.comparison import DISPLACEMENT, FRICTION, OtherResults
+
+
+def made_of(kind: type[View]) -> str:
+    """All that a browser gets of a new view, with its models numbered in order."""
+    document = Document()
+    document.add_root(kind(PageState(default_settings("bar"))).layout)
+    text = json.dumps(document.to_json().content["roots"])
+    ids = re.findall(r'"id": "(p\d+)"', text)
+    numbers = {name: str(number) for number, name in enumerate(ids)}
+    return re.sub(r'"(p\d+)"', lambda found: numbers[found[1]], text)
+
+
+@pytest.mark.parametrize("kind", VIEWS)
+def test_figures_are_the_same_where_bokeh_does_not_check_their_values(
+    kind: type[View],
+) -> None:
+    checked = made_of(kind)
+    settings.perform_document_validation = False
+    try:
+        assert made_of(kind) == checked
+    finally:
+        settings.perform_document_validation.unset_value()
 
 
 @pytest.mark.parametrize("kind", VIEWS)
