@@ -87,9 +87,12 @@ def in_rows(layout: Layout, word: Word, most: int) -> list[Word]:
 
 
 def around(layout: Layout, word: Word, most: int) -> list[Word]:
-    """Copies of a label moved by up to `most` rows, then also aside by its width."""
+    """Copies of a label moved by up to `most` rows, then also aside by its width.
+
+    Two labels beside each other have a letter between them.
+    """
     level = in_rows(layout, word, most)
-    width = width_of(layout, word)
+    width = width_of(layout, word) + layout.letter
     aside = []
     for one in (word, *level):
         for shift in (-width, width):
