@@ -226,7 +226,7 @@ class _LoopFigure(NamedTuple):
         return self.extremes.largest
 
     def in_words(self, value: float) -> str:
-        """A value in the unit of the figure, the same for the whole run if it is large."""
+        """A value in the unit of the figure, or in a smaller one if it is small."""
         # Shares are in per cent.
         if not self.unit:
             return percent(value)

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from typing import Any
 
 import panel_material_ui as pmui
-import param
 
 from app.browser import Echoes, linked, linked_to
 from app.frame import Selection
