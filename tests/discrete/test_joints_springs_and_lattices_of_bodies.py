@@ -179,24 +179,19 @@ def test_a_node_without_a_pair_gives_its_length_to_its_neighbour() -> None:
 @pytest.mark.parametrize("is_left_handed", [False, True])
 def test_where_joints_meet_in_a_corner_there_is_no_pair(is_left_handed: bool) -> None:
     """Two blocks beside each other, both on a third one, on which they lie."""
-    side_by_side = on_each_other("lattice", is_left_handed=is_left_handed)
+    beside = on_each_other("lattice", is_left_handed=is_left_handed)
     floor = Lattice(8, 2, LENGTH / 4, HEIGHT / 2)
-    bodies = [
-        *side_by_side.bodies,
-        Body("floor", floor, 2e10, 0.3, origin=np.array([0.0, -HEIGHT])),
-    ]
+    below = Body("floor", floor, 2e10, 0.3, origin=np.array([0.0, -HEIGHT]))
     foot = LATTICE.side("bottom")
-    up = np.tile(UP, (5, 1))
-    joints = list(side_by_side.joints)
+    joints = list(beside.joints)
     for number in (0, 1):
         bed = floor.side("top")[4 * number : 4 * number + 5]
+        up = np.tile(UP, (5, 1))
         joints.append(Joint(f"bed {number}", number, foot, 2, bed, up))
-    ground = [
-        Held(f"ground {axis}", 2, floor.side("bottom"), axis, ZERO) for axis in (0, 1)
-    ]
-    free = [held for held in side_by_side.held if held.name == "pressed"]
+    held = [held for held in beside.held if held.name == "pressed"]
+    held += [Held("ground", 2, floor.side("bottom"), axis, ZERO) for axis in (0, 1)]
     structure = replace(
-        side_by_side, bodies=bodies, joints=joints, held=[*free, *ground]
+        beside, bodies=[*beside.bodies, below], joints=joints, held=held
     )
     problem = discretise(structure)
     sizes = {name: len(law.positions) for name, law in problem.contacts.items()}

@@ -263,15 +263,7 @@ class CutBodies:
         force = own.forces(self.structure.bodies[bodies[0]].weight, loads)
         unit = self.young * self.length
         if own.n_axes == 2 and is_axes[nodes].all():
-            if force is not None:
-                size = len(force.courses)
-                patterns = force.patterns.reshape(-1, size) / unit
-                force = PartForce(patterns, force.courses)
-            # Parts that are alike have the very same force.
-            return [
-                PartNodes(numbers, key, None, force)
-                for numbers, key in zip(nodes, keys, strict=True)
-            ]
+            return _along_axes(nodes, keys, force, unit)
         frames = motions[nodes, : own.n_axes]
         forces: list[PartForce | None] = [None] * len(owners)
         if force is not None:
@@ -311,6 +303,21 @@ class CutBodies:
                     on_part[places] = on_nodes[is_own]
                     found.setdefault(owner, []).append(PartForce(on_part, courses))
         return found
+
+
+def _along_axes(
+    nodes: Indices, keys: Sequence[bytes], force: PartForce | None, unit: float
+) -> list[PartNodes]:
+    """Nodes and forces of equal parts with directions along x and y: the same force.
+
+    `nodes` have the shape (n_parts, n_nodes); `keys` are those of their directions.
+    Patterns of the force are (n_nodes, 2, n_patterns), N, and `unit` is its unit, N.
+    """
+    if force is not None:
+        patterns = force.patterns.reshape(-1, len(force.courses)) / unit
+        force = PartForce(patterns, force.courses)
+    of_parts = zip(nodes, keys, strict=True)
+    return [PartNodes(numbers, key, None, force) for numbers, key in of_parts]
 
 
 def _separated(force: Array) -> tuple[Array, Array]:

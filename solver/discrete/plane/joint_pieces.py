@@ -175,20 +175,14 @@ def pieces_of(
     counts = [len(cut.elements) for cut in cuts]
     first_parts = np.cumsum([0, *counts]).tolist()
     ends = frames.first_pairs.tolist()
-    flags = frames.has_pair.tobytes()
-    held = frames.is_held.tobytes()
     for number, joint in enumerate(joints):
         own = slice(ends[number], ends[number + 1])
-        key = kinds[number], flags[own], held[own], joint.along
+        flags = frames.has_pair[own], frames.is_held[own]
+        of_flags = b"".join(each.tobytes() for each in flags)
+        key = kinds[number], joint.along, of_flags
         if key not in known:
-            has_pair = frames.has_pair[own]
-            is_held = frames.is_held[own]
             whole = _pieces_of_joint(bodies, number, joint, cuts)
-            known[key] = [
-                _paired(piece, has_pair[piece.places], is_held[piece.places])
-                for piece in whole
-                if has_pair[piece.places].any()
-            ]
+            known[key] = _with_pairs(whole, *flags)
         if not known[key]:
             raise RefusedError(
                 f"{joint}.nodes",
@@ -199,6 +193,17 @@ def pieces_of(
             )
         pieces += [_of_joint(piece, number, joint, first_parts) for piece in known[key]]
     return pieces
+
+
+def _with_pairs(
+    pieces: Sequence[JointPiece], has_pair: Flags, is_held: Flags
+) -> list[JointPiece]:
+    """Pieces of a joint that have pairs, by flags of its nodes, (n_nodes,) both."""
+    return [
+        _paired(piece, has_pair[piece.places], is_held[piece.places])
+        for piece in pieces
+        if has_pair[piece.places].any()
+    ]
 
 
 def _of_joint(

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 @cache
 def _exact(corners: int) -> tuple[Array, Array]:
-    """Points and weights of the integration of elements with a number of corners.
+    """Points, (2, n), and weights, (n,), of the integration of elements.
 
-    Exact for the stiffness of elements with parallel edges.
+    Exact for the stiffness of elements with parallel edges, of a number of corners.
     """
     import skfem
     from skfem.quadrature import get_quadrature
