@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from bokeh.events import Pan, Tap
-from bokeh.models import PanTool
+from bokeh.models import CustomJS, PanTool
 
 from app.frame import Frame, Run, Selection
 from app.views.acts import unit_of
@@ -27,6 +27,11 @@ HIGH = 3.2
 MARKED = 1.4
 """Ends of the axis up, and upper end of the line of an instant: paths lie between -1
 and 1, and their names above that line."""
+
+MARK = "legend.change.emit()"
+"""Script that has a legend painted. Bokeh makes its entries anew where one changes, and
+leaves their marks blank until something else in the figure is painted: of a run whose
+paths are those of the last one but for their sizes only the words change."""
 
 
 class Timeline(View):
@@ -51,7 +56,11 @@ class Timeline(View):
         self.add("instant", "Segment", "", also="x", x0="x", x1="x", **look)
         self.add("now", "Scatter", color=FORCE, size=11)
         self.mark(PATHS | {"time": UNSEEN})
-        self.legend(*PATHS, "time", place="center")
+        box = self.legend(*PATHS, "time", place="center")
+        mark = CustomJS(args={"legend": box}, code=MARK)
+        for item in box.items:
+            item.js_on_change("label", mark)
+            item.js_on_change("visible", mark)
         # As the range has bounds, the tool pans nothing. It only keeps a touch from
         # scrolling the page.
         plot.add_tools(PanTool(dimensions="width"))

@@ -88,10 +88,6 @@ for (const each of hidden) each.visible = !each.visible
 """Script that hides the glyph whose copy in the legend is clicked, or shows it again;
 marks stay as they are."""
 
-MARK = "legend.change.emit()"
-"""Script that has a legend painted. Bokeh makes its entries anew where one changes, and
-leaves their marks blank until something else in the figure is painted."""
-
 INSPECT = """
 const view = Bokeh.index.find_one(cb_obj)
 const turn = () => {
@@ -369,10 +365,6 @@ class View:
         box.click_policy = "hide"
         hide = CustomJS(args={"plot": self._figure}, code=HIDE)
         box.js_on_event(LegendItemClick, hide)
-        mark = CustomJS(args={"legend": box}, code=MARK)
-        for item in box.items:
-            item.js_on_change("label", mark)
-            item.js_on_change("visible", mark)
         return box
 
     def show(

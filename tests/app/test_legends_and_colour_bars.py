@@ -8,6 +8,7 @@ from app.state import PageState, default_settings
 from app.views.parts import bare, color_bar, explain
 from app.views.rope import WireSection
 from app.views.scene import Stress
+from app.views.timeline import Timeline
 from app.views.view import View
 
 
@@ -20,16 +21,15 @@ def test_a_legend_above_begins_inside_the_figure(kind: type[View]) -> None:
             assert legend.styles["margin-left"] == "0"
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_an_entry_that_changes_has_the_legend_painted(kind: type[View]) -> None:
+def test_an_entry_that_changes_has_the_legend_of_the_time_line_painted() -> None:
     # Bokeh leaves its marks blank, and the figure may have no other change.
-    plot = kind(PageState(default_settings("bar"))).figure
-    for legend in plot.legend:
-        for item in legend.items:
-            for change in ("label", "visible"):
-                (script,) = item.js_property_callbacks[f"change:{change}"]
-                assert script.args == {"legend": legend}
-                assert "change.emit" in script.code
+    (legend,) = Timeline(PageState(default_settings("bar"))).figure.legend
+    assert legend.items
+    for item in legend.items:
+        for change in ("label", "visible"):
+            (script,) = item.js_property_callbacks[f"change:{change}"]
+            assert script.args == {"legend": legend}
+            assert "change.emit" in script.code
 
 
 def test_a_colour_bar_is_laid_out_anew_for_other_values_and_only_then() -> None:
