@@ -18,8 +18,13 @@ from solver.discrete import (
     Lattice,
     Load,
     NodeSpring,
+    Side,
+    SideComponent,
+    Stack,
     discretise,
 )
+from solver.discrete.plane.rectangles.bricks import Brick
+from solver.discrete.probes import side_mean
 from solver.reference.incremental import reference_of
 from solver.refusal import RefusedError
 
@@ -283,6 +288,45 @@ def test_a_turned_lattice_joined_with_a_mesh_answers_alike(turn: float) -> None:
     assert found.tangential_force.sum(axis=0) == pytest.approx(PUSH, abs=1e-3)
     run = solve(problem, Latin(), watch=False)
     assert run.is_certified
+
+
+def test_a_side_is_that_of_all_bodies_that_reach_it_up_to_rounding() -> None:
+    """Half of 0.1 m twice ends elsewhere than a sixth and five: by rounding."""
+    end = Side(SideComponent(True, 1e-6 * TIMES), SideComponent(True, ZERO))
+    stack = Stack(
+        length=0.1,
+        height=0.2,
+        elements=(6, 2),
+        substructures=(1, 1),
+        young=2e10,
+        poisson=0.3,
+        instants=TIMES,
+        duration=1.0,
+        bricks=[
+            Brick(0, 0, 3, 2),
+            Brick(3, 0, 3, 2),
+            Brick(0, 2, 1, 2),
+            Brick(1, 2, 5, 2),
+        ],
+        sides={"left": Side(end.y, end.y), "right": end},
+    )
+    problem = discretise(stack)
+    assert problem.inside is not None
+    x = problem.inside.nodes[:, 0]
+    assert len(np.unique(x[np.isclose(x, 0.1)])) == 2
+    mean = side_mean(problem, "right", 0)
+    assert mean(reference_of(problem).displacement) == pytest.approx(1e-6 * TIMES)
+    # Both bodies there have two elements up, and so three nodes each.
+    assert np.count_nonzero(mean.weights) == 6
+
+
+def test_the_softest_body_sets_the_unit_of_stress() -> None:
+    """Displacements beside a body of a hundred thousand times its modulus are large."""
+    structure = on_each_other("lattice")
+    soft, other = structure.bodies
+    stiff = replace(other, young=1e5 * soft.young)
+    scales = discretise(replace(structure, bodies=[soft, stiff])).scales
+    assert scales.force / scales.displacement == pytest.approx(soft.young)
 
 
 GROUND = block(Body("block", MESH, 2e10, 0.3), 0.1).joints[0]
