@@ -221,17 +221,34 @@ class Instants:
         if self._has_guess and self._starts.from_guess and not rules.is_nonlinear:
             guesses[:2] = guesses[1::-1]
         solved = newton.follow(begin, right_sides, guesses)
-        if solved is None and not self._is_lost:
-            if rules.is_nonlinear:
-                solved = self._in_parts(begin, right_sides, known, instant)
-            elif self._may_hold(instant):
-                solved = newton.follow(
-                    begin, right_sides, newton.approach(begin, right_sides)
-                )
         # After a lost instant the start is uncertain: no costly search is tried.
+        if solved is None and not self._is_lost:
+            solved = self._searched(begin, right_sides, known, instant)
         self.is_stuck = solved is None
         self._is_lost = self._is_lost or self.is_stuck
         return solved
+
+    def _searched(
+        self,
+        begin: InstantSolution,
+        right_sides: RightSides,
+        known: list[States],
+        instant: int,
+    ) -> InstantSolution | None:
+        """Seek an instant that no guess leads to; None without a solution.
+
+        Where the law is linear in the slip, a costly search is for instants at which
+        there may be an equilibrium; a whole step may miss what small ones follow.
+        `known` are states to try, shape (n,) each.
+        """
+        if not self._rules.is_nonlinear:
+            if not self._may_hold(instant):
+                return None
+            approach = self._newton.approach(begin, right_sides)
+            solved = self._newton.follow(begin, right_sides, approach)
+            if solved is not None:
+                return solved
+        return self._in_parts(begin, right_sides, known, instant)
 
     def _in_parts(
         self,

@@ -25,6 +25,10 @@ from solver.reference.assembly import (
 )
 from solver.reference.distance import determinate_forces
 from solver.reference.incremental import reference_of
+from solver.reference.instants import Instants
+from solver.reference.newton import Newton
+from solver.scenes import CATALOGUE
+from solver.scenes import discretise as discretise_scene
 
 SMALL = 1e-10
 
@@ -192,6 +196,37 @@ def test_a_block_under_more_shear_than_friction_carries_is_said_to_be_lost():
     assert found.collapse.time == pytest.approx(exact, rel=1e-9)
     assert found.residual > 1e-3
     assert np.abs(found.displacement).max() < 0.1
+
+
+def test_an_instant_that_no_guess_leads_to_is_found_in_parts(monkeypatch):
+    settings = CATALOGUE["arch"].checked({"voussoirs": 9, "instants": 5})
+    moved = discretise_scene(settings)
+    expected = reference_of(moved)
+    missing = []
+    follow = Newton.follow
+    solved = Instants._solved
+
+    def noted(self, right_sides, instant):
+        # Where nothing has acted before there is no solution to begin from.
+        if instant > 1:
+            missing.extend(["from a guess", "from softer springs"])
+        return solved(self, right_sides, instant)
+
+    def missed(self, begin, right_sides, guesses):
+        if missing:
+            missing.pop()
+            return None
+        return follow(self, begin, right_sides, guesses)
+
+    monkeypatch.setattr(Instants, "_solved", noted)
+    monkeypatch.setattr(Newton, "follow", missed)
+    found = reference_of(moved)
+    assert not expected.is_lost
+    assert not found.is_lost
+    size = np.abs(expected.contact_force).max()
+    np.testing.assert_allclose(
+        found.contact_force, expected.contact_force, rtol=0.0, atol=1e-9 * size
+    )
 
 
 def test_a_body_that_nothing_holds_even_glued_is_refused():
