@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from app.frame import Floats
 from solver.arrays import Array, Flags, Indices
-from solver.discrete import Beam, Bodies
+from solver.discrete import Beam, Bodies, Structure
 from solver.discrete.inside import Inside
 from solver.discrete.plane.cut_shapes import bisected
 
@@ -72,14 +72,48 @@ class Drawing:
     cell_of_elements: Indices
 
 
-def drawings_of_grids(inside: Inside) -> list[Drawing]:
+def drawings_of(structure: Structure, inside: Inside) -> list[Drawing]:
+    """Drawings of the substructures of bodies in the plane.
+
+    Rectangular ones keep some lines of their grids, others groups of their elements.
+    """
+    drawings = _drawings_of_grids(inside)
+    if isinstance(structure, Bodies):
+        drawings += _drawings_of_shapes(structure, inside)
+    return sorted(drawings, key=lambda drawing: drawing.part)
+
+
+def is_rectangle(grid: Indices) -> bool:
+    """Check whether nodes of a substructure are in rows and columns, not in a list."""
+    return grid.ndim == 2
+
+
+def lower_corner(inside: Inside) -> Array:
+    """Lower left corner of all bodies, from which on they are drawn, (2,), m."""
+    return np.asarray(inside.nodes.min(axis=0))
+
+
+def kept_ring(grid: Indices, limit: int) -> Indices:
+    """Closed ring of outer nodes of a grid, as places in its order, (n,).
+
+    `limit` is the largest number of nodes on a side.
+    """
+    places = np.arange(grid.size).reshape(grid.shape)
+    up, across = [thinned(size, limit) for size in grid.shape]
+    return _ring_of(places[np.ix_(up, across)])
+
+
+def _drawings_of_grids(inside: Inside) -> list[Drawing]:
     """Drawings of rectangular substructures, with a subset of their grid lines."""
+    grids = {part: grid for part, grid in enumerate(inside.grids) if is_rectangle(grid)}
+    if not grids:
+        return []
     # All grids are thinned alike, so that bodies of one size look alike.
     limit = max(MOST_CELLS // len(inside.grids), 1)
-    shapes = np.array([np.subtract(grid.shape, 1) for grid in inside.grids])
+    shapes = np.array([np.subtract(grid.shape, 1) for grid in grids.values()])
     share = min(np.sqrt(limit / shapes.prod(axis=1).max()), 1.0)
     drawings = []
-    for part, grid in enumerate(inside.grids):
+    for part, grid in grids.items():
         up, across = _kept_lines(grid, share, limit)
         kept = grid[np.ix_(up, across)]
         positions = inside.nodes[kept]
@@ -87,18 +121,21 @@ def drawings_of_grids(inside: Inside) -> list[Drawing]:
     return drawings
 
 
-def drawings_of_shapes(structure: Bodies, inside: Inside) -> list[Drawing]:
-    """Drawings of substructures of any shape."""
+def _drawings_of_shapes(structure: Bodies, inside: Inside) -> list[Drawing]:
+    """Drawings of substructures of any other shape."""
+    others = [part for part, grid in enumerate(inside.grids) if not is_rectangle(grid)]
+    if not others:
+        return []
     share = min(MOST_CELLS / len(inside.elements), 1.0)
     around = 4.0 * sum(body.shape.size for body in structure.bodies)
     sides = _sides_in_contact(structure)
     thinnest = BAND * float(structure.box[1].max())
     bodies = inside.bodies[np.searchsorted(inside.parts, np.arange(len(inside.grids)))]
     drawings = []
-    for part, number in enumerate(bodies.tolist()):
+    for part in others:
         elements = inside.elements[inside.parts == part]
         count = max(round(share * len(elements)), 1)
-        shape = structure.bodies[number].shape
+        shape = structure.bodies[bodies[part]].shape
         if isinstance(shape, Beam):
             thickness = np.sqrt(12.0 * shape.second_moment / shape.area)
             thickness = max(float(thickness), thinnest)
@@ -158,12 +195,6 @@ def cells_of(drawings: Sequence[Drawing]) -> Indices:
     return np.concatenate(numbers)
 
 
-def ring_of(grid: Indices) -> Indices:
-    """Closed ring of the outer nodes of a grid, (n_rows, n_columns): (n,)."""
-    sides = (grid[0], grid[1:, -1], grid[-1, -2::-1], grid[-2::-1, 0])
-    return np.concatenate(sides)
-
-
 def _drawn_grid(
     part: int, numbers: Indices, positions: Array, cell_of_elements: Indices
 ) -> Drawing:
@@ -175,9 +206,15 @@ def _drawn_grid(
         numbers=numbers.ravel(),
         positions=positions.reshape(-1, 2),
         cells=np.stack(corners, axis=-1).reshape(-1, 4),
-        rings=[ring_of(n)],
+        rings=[_ring_of(n)],
         cell_of_elements=cell_of_elements,
     )
+
+
+def _ring_of(grid: Indices) -> Indices:
+    """Closed ring of the outer nodes of a grid, (n_rows, n_columns): (n,)."""
+    sides = (grid[0], grid[1:, -1], grid[-1, -2::-1], grid[-2::-1, 0])
+    return np.concatenate(sides)
 
 
 def _kept_lines(grid: Indices, share: float, limit: int) -> tuple[Indices, Indices]:

@@ -11,16 +11,16 @@ from app.frame import DeformedGeometry, Floats, Geometry
 from app.messages import Needs
 from app.worker.cells import (
     cells_of,
-    drawings_of_grids,
-    drawings_of_shapes,
+    drawings_of,
     floats,
     joined,
+    lower_corner,
     mesh_of,
     thinned,
 )
 from app.worker.thrust import Thrusts
 from solver.arrays import Array, Indices
-from solver.discrete import Bodies, Problem
+from solver.discrete import Problem
 from solver.discrete.elements import von_mises
 from solver.discrete.probes import AxialForce
 from solver.discrete.structure import Description
@@ -195,13 +195,8 @@ class DrawnMesh(Drawn):
         self._inside = inside
         self._poisson = poisson_in(settings, inside)
         self._state = settings.values()["plane"]
-        # Positions are drawn from the lower left corner of all bodies on.
-        self._corner = np.zeros(2)
-        if isinstance(structure, Bodies):
-            drawings = drawings_of_shapes(structure, inside)
-            self._corner, _ = structure.box
-        else:
-            drawings = drawings_of_grids(inside)
+        self._corner = lower_corner(inside)
+        drawings = drawings_of(structure, inside)
         self.extras: Extras = {"stress": self._stress}
         if settings.has_joints:
             self.extras["thrust"] = Thrusts(problem, self._corner, columns).of

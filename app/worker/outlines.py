@@ -6,10 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.worker.cells import Drawing, drawings_of_shapes, ring_of, thinned
+from app.worker.cells import (
+    Drawing,
+    drawings_of,
+    is_rectangle,
+    kept_ring,
+    lower_corner,
+    thinned,
+)
 from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array, Indices
-from solver.discrete import Bodies, Problem
+from solver.discrete import Problem, Structure
+from solver.discrete.inside import Inside
 from solver.discrete.substructure import Substructure
 
 MOST_CORNERS = 600
@@ -37,44 +45,46 @@ def _mean_of_rows(part: Substructure) -> Array:
     return np.asarray(mean / np.maximum(mean.sum(axis=1), 1.0)[:, None])
 
 
-def outlines_of_bodies(problem: Problem) -> list[Outline]:
+def outlines_in_the_plane(problem: Problem, structure: Structure) -> list[Outline]:
     """Outlines of the substructures of bodies in the plane."""
     inside = problem.inside
     assert inside is not None
-    limit = int(np.clip(MOST_CORNERS / (4 * len(inside.grids)), 2, 9))
+    corner = lower_corner(inside)
     outlines = []
-    for number, grid in enumerate(inside.grids):
-        numbers = np.arange(grid.size).reshape(grid.shape)
-        up, across = [thinned(size, limit) for size in grid.shape]
-        ring = ring_of(numbers[np.ix_(up, across)])
-        matrix, given = inside.of_part(number, ring)
+    for number, (places, positions) in enumerate(_rings_of(structure, inside)):
+        matrix, given = inside.of_part(number, places)
         motion = matrix @ _mean_of_rows(problem.substructures[number])
-        corners = inside.nodes[grid.ravel()[ring]]
-        outlines.append(Outline(corners, motion, given))
+        outlines.append(Outline(positions - corner, motion, given))
     return outlines
 
 
-def outlines_of_shapes(problem: Problem, structure: Bodies) -> list[Outline]:
-    """Outlines of the substructures of bodies of any shape."""
-    inside = problem.inside
-    assert inside is not None
-    limit = max(MOST_CORNERS // len(inside.grids), 8)
+def _rings_of(structure: Structure, inside: Inside) -> list[tuple[Indices, Array]]:
+    """Longest closed line round each substructure, by places and positions.
+
+    The places, (n,), are those in the order of the nodes of the substructure, and the
+    positions are where these are drawn, (n, 2), m.
+    """
+    count = len(inside.grids)
+    on_side = int(np.clip(MOST_CORNERS / (4 * count), 2, 9))
+    around = max(MOST_CORNERS // count, 8)
     longest = dict[int, tuple[Drawing, Indices]]()
-    for drawing in drawings_of_shapes(structure, inside):
+    for drawing in drawings_of(structure, inside):
         for ring in drawing.rings:
             if drawing.part not in longest or len(ring) > len(longest[drawing.part][1]):
                 longest[drawing.part] = drawing, ring
-    outlines = []
-    for number, (drawing, ring) in sorted(longest.items()):
-        kept = ring[thinned(len(ring), limit)]
-        nodes = inside.grids[number].ravel()
+    found = []
+    for number, grid in enumerate(inside.grids):
+        nodes = grid.ravel()
+        if is_rectangle(grid):
+            places = kept_ring(grid, on_side)
+            found.append((places, inside.nodes[nodes[places]]))
+            continue
+        drawing, ring = longest[number]
+        kept = ring[thinned(len(ring), around)]
         order = np.argsort(nodes)
-        numbers = order[np.searchsorted(nodes[order], drawing.numbers[kept])]
-        matrix, given = inside.of_part(number, numbers)
-        motion = matrix @ _mean_of_rows(problem.substructures[number])
-        corners = drawing.positions[kept] - structure.box[0]
-        outlines.append(Outline(corners, motion, given))
-    return outlines
+        places = order[np.searchsorted(nodes[order], drawing.numbers[kept])]
+        found.append((places, drawing.positions[kept]))
+    return found
 
 
 def outlines_of_rods(

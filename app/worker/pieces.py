@@ -15,16 +15,11 @@ from scipy import sparse
 
 from app.frame import LINEAR, LOCAL, Floats
 from app.messages import Needs
-from app.worker.cells import NONE, floats, thinned
-from app.worker.outlines import (
-    Outline,
-    outlines_of_bodies,
-    outlines_of_rods,
-    outlines_of_shapes,
-)
+from app.worker.cells import NONE, floats, lower_corner, thinned
+from app.worker.outlines import Outline, outlines_in_the_plane, outlines_of_rods
 from app.worker.piece_joints import PieceJoints, pairs_of
 from solver.arrays import Array, Flags, Indices
-from solver.discrete import Bodies, Problem
+from solver.discrete import Problem
 from solver.latin import Iterate
 from solver.settings.scene import Settings
 
@@ -126,12 +121,9 @@ class Cutter:
         numbers = np.arange(len(problem.substructures))
         if self._kind == "plane":
             positions = problem.positions[problem.row_dofs]
-            if isinstance(self._structure, Bodies):
-                outlines = outlines_of_shapes(problem, self._structure)
-                # From the corner on from which bodies are drawn.
-                positions = positions - self._structure.box[0]
-            else:
-                outlines = outlines_of_bodies(problem)
+            assert problem.inside is not None
+            positions = positions - lower_corner(problem.inside)
+            outlines = outlines_in_the_plane(problem, self._structure)
         else:
             count = min(self._bodies, MOST_RODS)
             if self._kind == "helices":

@@ -103,7 +103,9 @@ class BodyStiffness:
 
     That is the stiffness of a body as a whole, or of a point of the body. A
     smaller k on cuts along slender substructures is no better, where the macro basis
-    grows with their length (measured).
+    grows with their length (measured). The k of other shapes (`NodalStiffness`) takes
+    rectangles 1.4 to 1.6 times the iterations to 1 % of the contact force in blocks, on
+    slopes and between layers, and as many in random runs (measured): each has its own.
 
     Attributes
     ----------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from itertools import product
 from types import SimpleNamespace
 
 import frames
@@ -26,10 +27,10 @@ from app.worker.cells import (
     BAND,
     MOST_CELLS,
     Drawing,
-    drawings_of_shapes,
+    drawings_of,
     joined,
 )
-from solver.discrete import Bodies, Body, Held, Mesh, discretise
+from solver.discrete import Bodies, Body, Held, Lattice, Mesh, discretise
 from solver.scenes import CATALOGUE
 from solver.settings.scene import Settings
 
@@ -71,7 +72,7 @@ def held(mesh: Mesh, substructures: int) -> Bodies:
 def drawings(structure: Bodies) -> list[Drawing]:
     inside = discretise(structure).inside
     assert inside is not None
-    return drawings_of_shapes(structure, inside)
+    return drawings_of(structure, inside)
 
 
 @pytest.mark.parametrize("substructures", [1, 3])
@@ -90,6 +91,29 @@ def test_cells_cover_a_body_once_and_are_few(rings: int, substructures: int) -> 
     assert covered.sum() == pytest.approx(sum(enclosed), rel=1e-5)
     # Of a thinned outline the bows between two nodes are missing.
     assert covered.sum() == pytest.approx(mesh.volume, rel=0.02)
+
+
+def test_a_lattice_beside_a_mesh_is_drawn_by_lines_of_its_grid() -> None:
+    lattice = Lattice(60, 40, 0.1, 0.1)
+    beside = replace(held(disc(4), 1).bodies[0], name="disc")
+    body = Body("lattice", lattice, 1e9, substructures=2)
+    nodes = np.arange(3)
+    instants = np.linspace(0.0, 1.0, 3)
+    holds = [
+        Held(f"{part} {axis}", part, nodes, axis, 0.0 * instants)
+        for part, axis in product((0, 1), repeat=2)
+    ]
+    drawn = drawings(Bodies([body, beside], (), holds, (), instants, 1.0))
+    assert [each.part for each in drawn] == [0, 1, 2]
+    of_lattice = [areas(each.cells, each.positions) for each in drawn[:2]]
+    # Straight sides: nothing of the rectangle is cut off, and no cell is bent.
+    assert np.sum(of_lattice[0]) + np.sum(of_lattice[1]) == pytest.approx(24.0)
+    for each in drawn[:2]:
+        corners = each.positions[each.cells]
+        assert corners[:, 0, 1] == pytest.approx(corners[:, 1, 1])
+        assert corners[:, 1, 0] == pytest.approx(corners[:, 2, 0])
+        assert len(each.cells) < 60 * 40 / 2
+    assert areas(drawn[2].cells, drawn[2].positions).min() > 0.0
 
 
 def test_cells_of_thinned_elements_lie_where_these_are() -> None:
