@@ -5,7 +5,7 @@ Parts of one body are glued where they were cut. Contact forces are lumped at th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from functools import partial
 
 import numpy as np
@@ -15,6 +15,7 @@ from solver.discrete.elements import legendre_basis
 from solver.discrete.inside import Inside
 from solver.discrete.loose_bodies import LooseBodiesError, loose_bodies
 from solver.discrete.plane.bodies import Bodies
+from solver.discrete.plane.body_parts import ShapePart
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.cut_shapes import Seam
 from solver.discrete.plane.joint_laws import glued, laws_of
@@ -112,11 +113,7 @@ def _interfaces(cut: CutBodies) -> Iterator[tuple[str, Interface]]:
     yield from laws_of(cut, partial(law_of_joints, cut))
     for number, spring in enumerate(cut.structure.springs):
         yield spring.name, _spring(cut, number)
-    for body, of_body in enumerate(cut.structure.bodies):
-        for number, seam in enumerate(cut.cuts[body].seams):
-            first, second = seam.parts
-            name = f"cut {first + 1} to {second + 1} of {of_body.name}"
-            yield name, _glued(cut, body, number, seam)
+    yield from _cuts_inside(cut)
     by_name = dict[str, list[int]]()
     for number, held in enumerate(cut.structure.held):
         by_name.setdefault(held.name, []).append(number)
@@ -124,22 +121,42 @@ def _interfaces(cut: CutBodies) -> Iterator[tuple[str, Interface]]:
         yield name, _prescribed(cut, numbers)
 
 
-def _glued(cut: CutBodies, body: int, number: int, seam: Seam) -> Perfect:
+def _cuts_inside(cut: CutBodies) -> Iterator[tuple[str, Perfect]]:
+    """Yield the interfaces inside bodies by name; equal bodies share macro bases."""
+    known = dict[Hashable, Array]()
+    for body, of_body in enumerate(cut.structure.bodies):
+        for number, seam in enumerate(cut.cuts[body].seams):
+            first, second = seam.parts
+            own = cut.shape_parts[cut.owner(body, first)]
+            key = id(own), id(seam)
+            if key not in known:
+                known[key] = _basis_on(seam, own, cut.structure.macro_degree)
+            name = f"cut {first + 1} to {second + 1} of {of_body.name}"
+            yield name, _glued(cut, body, number, known[key])
+
+
+def _basis_on(seam: Seam, part: ShapePart, degree: int) -> Array:
+    """Macro basis of one component along a seam beside a part, (n_nodes, n_macro)."""
+    if part.n_axes > 2:
+        # Beams are cut at a node, whose three components all balance.
+        return np.ones((1, 1))
+    reach = np.abs(seam.positions).max()
+    slenderness = part.slenderness(seam.nodes, seam.weights.sum())
+    return legendre_basis(seam.positions / reach, slenderness, degree)
+
+
+def _glued(cut: CutBodies, body: int, number: int, basis: Array) -> Perfect:
     """Perfect interface of two parts of one body.
 
-    Macro forces are polynomials along the seam in both directions of the body's axes.
+    Macro forces are polynomials along the seam, by the basis of one component,
+    (n_nodes, n_macro), in both directions of the body's axes.
     """
+    seam = cut.cuts[body].seams[number]
     first, second = [cut.parts[cut.owner(body, part)] for part in seam.parts]
     rows = first.rows(("first", body, number))
     opposite = second.rows(("second", body, number))
     if rows.shape[1] > 2:
-        # Beams are cut at a node, whose three components all balance.
-        return glued(rows, opposite, np.ones((1, 1)))
-    reach = np.abs(seam.positions).max()
-    own = cut.shape_parts[cut.owner(body, seam.parts[0])]
-    slenderness = own.slenderness(seam.nodes, seam.weights.sum())
-    degree = cut.structure.macro_degree
-    basis = legendre_basis(seam.positions / reach, slenderness, degree)
+        return glued(rows, opposite, basis)
     return glued(rows, opposite, basis, cut.local_frames(body, seam.nodes))
 
 

@@ -101,15 +101,18 @@ class TracesOfParts:
         )
 
     def _at_cuts(self) -> Iterator[Named]:
-        """Yield the rows of both sides of the cuts inside bodies."""
+        """Yield the rows of both sides of cuts; bodies that are alike share theirs."""
+        known = dict[Hashable, Trace]()
         for body, cut in enumerate(self._cuts):
             for number, seam in enumerate(cut.seams):
                 for name, part in zip(("first", "second"), seam.parts, strict=True):
                     own = self._of_bodies[body][part]
-                    dofs = own.dofs_at(seam.nodes, np.arange(own.n_axes))
-                    k = own.direction_on_cut(seam.nodes, seam.weights)
-                    trace = Trace(dofs, k, has_macro=True)
-                    yield self._firsts[body] + part, (name, body, number), trace
+                    key = id(own), id(seam)
+                    if key not in known:
+                        dofs = own.dofs_at(seam.nodes, np.arange(own.n_axes))
+                        k = own.direction_on_cut(seam.nodes, seam.weights)
+                        known[key] = Trace(dofs, k, has_macro=True)
+                    yield self._firsts[body] + part, (name, body, number), known[key]
 
     def _at_holds(self) -> Iterator[Named]:
         """Yield the rows of prescribed displacements, in every part with the node."""
