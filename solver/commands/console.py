@@ -15,10 +15,12 @@ from pathlib import Path
 from typing import Any
 
 from solver.discrete.problem import Problem
+from solver.files.amounts import Unit
 from solver.files.disk import check_place, read_bytes, why
 from solver.files.paraview import PARAVIEW, contacts_of_series
 from solver.files.saved import settings_from_command
 from solver.files.tables import Table, read_table
+from solver.files.typed import typed_amount
 from solver.latin.end.cost import run_cost
 from solver.scenes.method import method_of
 from solver.scenes.remarks import remarks_before
@@ -67,6 +69,33 @@ def given(chosen: argparse.Namespace) -> tuple[Settings, Mapping[str, str]]:
 def names_in(options: Sequence[str]) -> list[str]:
     """Names between commas in an option, which may be given several times."""
     return [name.strip() for name in ",".join(options).split(",")]
+
+
+def number_in(
+    chosen: argparse.Namespace,
+    option: str,
+    allowed: str,
+    unit: str = "",
+    *,
+    is_whole: bool = False,
+) -> Any:
+    """Number in an option, in a unit, or None if it is not given.
+
+    It is read as settings are. Where it is to be whole it is an integer.
+    """
+    text = getattr(chosen, option)
+    if not isinstance(text, str):
+        return text
+    refuse = partial(SettingError, f"--{option}", text, allowed)
+    try:
+        value = typed_amount(text, Unit(unit), unit)
+    except ValueError as flaw:
+        raise refuse(str(flaw)) from None
+    if not is_whole:
+        return value
+    if value != int(value):
+        raise refuse("write a whole number")
+    return int(value)
 
 
 def read_brought(chosen: argparse.Namespace, allowed: str) -> Table:

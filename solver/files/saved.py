@@ -161,6 +161,10 @@ def _changes_in(assignments: Sequence[str], kind: type[Settings]) -> dict[str, o
                 "--set", assignment, "NAME=VALUE", "write an equals sign"
             )
         name = before.strip()
+        if not name:
+            raise SettingError(
+                "--set", assignment, "NAME=VALUE", "write a name before the sign"
+            )
         if name in definitions:
             changes[name] = typed_value(text, name, definitions[name])
         else:

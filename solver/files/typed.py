@@ -77,7 +77,11 @@ def typed_value(text: str, name: str, definition: Parameter | None) -> Any:
         return SWITCHED.get(value.lower(), value)
     if isinstance(definition, CurveParameter) and value.startswith("["):
         # Entries that TOML does not know, as `.5`, are written as it does.
-        return parse(_ENTRY.sub(_plain_entry, value))
+        rows = parse(_ENTRY.sub(_plain_entry, value))
+        if isinstance(rows, str):
+            remedy = "write numbers between commas, and close each bracket"
+            raise SettingError(name, value, allowed(definition), remedy)
+        return rows
     return value
 
 

@@ -266,6 +266,9 @@ def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], b
         remedy = "write three numbers, colons between them"
         raise _range_error(definition, name, text, remedy) from None
     remedy = _remedy(low, high, count, logarithmic)
+    is_counted = isinstance(definition, param.Integer)
+    if is_counted and not remedy and (low != int(low) or high != int(high)):
+        remedy = "the two ends are whole numbers"
     if remedy:
         raise _range_error(definition, name, text, remedy)
     if logarithmic:
@@ -274,7 +277,7 @@ def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], b
         spread = np.linspace(low, high, int(count))
     # Through text, so that 0.1:0.6:6 holds 0.3 and not 0.30000000000000004.
     values: list[object] = [float(f"{value:.12g}") for value in spread]
-    if isinstance(definition, param.Integer):
+    if is_counted:
         values = [round(float(f"{value:.12g}")) for value in spread]
     return values, logarithmic
 
