@@ -52,7 +52,7 @@ from solver.study.quantities.finished import (
     figures_of,
     known_reference,
 )
-from solver.study.quantities.quantity import Quantity
+from solver.study.quantities.quantity import NEVER, Quantity
 
 DESCRIPTION = (
     "Commands of `python -m solver`: run a scene, list what there is, measure, draw "
@@ -311,7 +311,10 @@ def _print_figures(
         figure.name: _key_figure_entry(run, figure) for figure in of_loop
     }
     if asked:
-        figures["quantities"] = {quantity.name: quantity(run) for quantity in asked}
+        values = {quantity.name: quantity(run) for quantity in asked}
+        figures["quantities"] = values
+        # JSON has no infinity: null alone would say that a run has no such value.
+        figures["never"] = [name for name in values if math.isinf(values[name])]
     figures["tables"] = tables
     figures["settings"] = run.settings.values()
     print_json(figures)
@@ -362,6 +365,8 @@ def _number(value: float, unit: str) -> str:
     """Text of a number with its unit."""
     if math.isnan(value):
         return "none"
+    if math.isinf(value):
+        return NEVER
     return f"{value:.6g} {unit}".strip()
 
 

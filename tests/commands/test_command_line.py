@@ -223,6 +223,22 @@ def test_foolish_options_are_refused_by_name(
     assert "; allowed: " in message
 
 
+def test_what_never_comes_is_told_from_what_a_run_does_not_have(capsys):
+    """A bar on strong ground never slips as a whole, and has no thrust."""
+    names = "first_slip_time@1,thrust,force"
+    command = ["run", "bar", *SMALL, "--no-reference", "--of", names]
+    assert main([*command, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    never = "first_slip_time@1.0"
+    assert (found["quantities"][never], found["quantities"]["thrust"]) == (None, None)
+    assert found["quantities"]["force"] > 0.0
+    assert found["never"] == [never]
+    assert main(command) == 0
+    figures = printed_figures(capsys.readouterr().out)
+    assert figures[never] == "never"
+    assert figures["thrust"] == "none"
+
+
 def test_a_limit_is_read_as_a_setting_is(capsys):
     command = ["run", "bar", *SMALL, "--no-reference", "--slab", "41."]
     assert main([*command, "--limit", "2 min"]) == 0
