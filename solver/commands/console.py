@@ -16,7 +16,7 @@ from typing import Any
 
 from solver.discrete.problem import Problem
 from solver.files.amounts import Unit
-from solver.files.disk import check_place, read_bytes, why
+from solver.files.disk import LARGEST_RESULTS, check_place, read_bytes, why
 from solver.files.paraview import PARAVIEW, contacts_of_series
 from solver.files.saved import settings_from_command
 from solver.files.tables import Table, read_table
@@ -101,11 +101,11 @@ def number_in(
 def read_brought(chosen: argparse.Namespace, allowed: str) -> Table:
     """Read the table of the option `--with`: a file, or a series for ParaView."""
     refuse = partial(SettingError, "--with", str(chosen.file), allowed)
-    data: bytes | str = read_bytes(chosen.file, refuse)
+    data: bytes | str = read_bytes(chosen.file, refuse, LARGEST_RESULTS)
     if chosen.file.suffix == PARAVIEW:
         interface = getattr(chosen, "interface", "")
         data = contacts_of_series(chosen.file, refuse, interface)
-    return read_table(data, chosen.file.name, "--with", allowed)
+    return read_table(data, chosen.file.name, "--with", allowed, LARGEST_RESULTS)
 
 
 def warn(*messages: str) -> None:

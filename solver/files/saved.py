@@ -15,7 +15,7 @@ from typing import Any, get_type_hints
 import numpy as np
 
 from solver.files.curves import messages, read_tables
-from solver.files.disk import LARGEST, TOO_LARGE, read_bytes, whole_file
+from solver.files.disk import LARGEST, read_bytes, too_large, whole_file
 from solver.files.meshes import read_meshes
 from solver.files.table_lines import text_of
 from solver.files.typed import typed_numbers, typed_value
@@ -181,7 +181,7 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
 def _parsed(data: bytes | str, name: str, shown: str) -> dict[str, Any]:
     """Parse a text in TOML; refusals have the name `name`, and show `shown`."""
     if len(data) > LARGEST:
-        raise SettingError(name, shown, "TOML", TOO_LARGE)
+        raise SettingError(name, shown, "TOML", too_large())
     refuse = partial(SettingError, name, shown, "TOML")
     text = text_of(data, refuse, "save the settings again")
     try:
