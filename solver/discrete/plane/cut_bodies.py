@@ -13,8 +13,10 @@ from solver.discrete.condensed_part import (
     N_AXES,
     CondensedPart,
     PartForce,
+    kept_by,
     numbered,
 )
+from solver.discrete.inside import HELD
 from solver.discrete.loose_bodies import LooseBodiesError
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.bodies import Bodies
@@ -198,6 +200,14 @@ class CutBodies:
                     "bodies that something holds",
                     "join it to another body, or hold some of its nodes",
                 )
+            if not self._is_held(owner, on_nodes.nodes):
+                raise LooseBodiesError(
+                    f"Bodies.bodies[{body}]",
+                    Words(f"{of_body} that can move beside its joints and holds"),
+                    "bodies that something holds; a joint of known strength does not "
+                    "hold them across",
+                    "hold one more node or axis, or add a joint",
+                )
             traces = self._traces[owner]
             first_rows, n_rows = numbered(traces, n_rows)
             mesh = self.shape_parts[owner]
@@ -212,6 +222,25 @@ class CutBodies:
                 frames=on_nodes.frames,
                 rotation=rotations[body] if of_body.angle else None,
             )
+
+    def _is_held(self, owner: int, nodes: Indices) -> bool:
+        """Check whether what a part keeps leaves it no rigid motion.
+
+        `nodes` are its nodes among those of all bodies, (n_nodes,).
+        """
+        traces = list(self._traces[owner].values())
+        # All components at two nodes, as of almost all parts, leave none.
+        if any(min(trace.dofs.shape) > 1 for trace in traces):
+            return True
+        own, axes = np.divmod(kept_by(traces), self.shape_parts[owner].n_axes)
+        is_turn = axes == 2
+        kept = nodes[own]
+        along = self.frames.frames[kept, np.where(is_turn, 0, axes)]
+        along[is_turn] = 0.0
+        x, y = (self.structure.nodes[kept] / self.length).T
+        turns = (x - x.mean()) * along[:, 1] - (y - y.mean()) * along[:, 0]
+        motions = np.column_stack([along, np.where(is_turn, 1.0, turns)])
+        return bool(np.linalg.matrix_rank(motions, tol=HELD) == N_AXES)
 
     def _nodes_of_parts(self) -> list[PartNodes]:
         """Nodes, motions and forces of every part; equal parts are made together."""
