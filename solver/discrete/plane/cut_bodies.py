@@ -12,6 +12,7 @@ from solver.arrays import Array, Flags, Indices, separated
 from solver.discrete.condensed_part import (
     N_AXES,
     CondensedPart,
+    Operator,
     PartForce,
     kept_by,
     numbered,
@@ -200,20 +201,12 @@ class CutBodies:
                     "bodies that something holds",
                     "join it to another body, or hold some of its nodes",
                 )
-            if not self._is_held(owner, on_nodes.nodes):
-                raise LooseBodiesError(
-                    f"Bodies.bodies[{body}]",
-                    Words(f"{of_body} that can move beside its joints and holds"),
-                    "bodies that something holds; a joint of known strength does not "
-                    "hold them across",
-                    "hold one more node or axis, or add a joint",
-                )
             traces = self._traces[owner]
             first_rows, n_rows = numbered(traces, n_rows)
             mesh = self.shape_parts[owner]
             yield CondensedPart(
                 mesh=mesh,
-                operator=self._operators.of(mesh, on_nodes, list(traces.values())),
+                operator=self._operator(owner, on_nodes),
                 nodes=mesh.arranged(on_nodes.nodes),
                 body=body,
                 traces=traces,
@@ -223,15 +216,23 @@ class CutBodies:
                 rotation=rotations[body] if of_body.angle else None,
             )
 
+    def _operator(self, owner: int, on_nodes: PartNodes) -> Operator:
+        """Operator of a part; refuse one that can move beside all that it keeps."""
+        traces = list(self._traces[owner].values())
+        try:
+            return self._operators.of(self.shape_parts[owner], on_nodes, traces)
+        except np.linalg.LinAlgError:
+            if self._is_held(owner, on_nodes.nodes):
+                raise
+        body = self.structure.bodies[self._body_of_parts[owner]]
+        raise LooseBodiesError.of([body.name])
+
     def _is_held(self, owner: int, nodes: Indices) -> bool:
         """Check whether what a part keeps leaves it no rigid motion.
 
         `nodes` are its nodes among those of all bodies, (n_nodes,).
         """
         traces = list(self._traces[owner].values())
-        # All components at two nodes, as of almost all parts, leave none.
-        if any(min(trace.dofs.shape) > 1 for trace in traces):
-            return True
         own, axes = np.divmod(kept_by(traces), self.shape_parts[owner].n_axes)
         is_turn = axes == 2
         kept = nodes[own]
