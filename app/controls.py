@@ -15,8 +15,9 @@ from app.browser import Echoes, fade_first, linked
 from app.files.opener import files_panel
 from app.files.points import CurveDialog
 from app.state import PageState
-from app.units import typed, unit_of
+from app.units import unit_of
 from app.widgets import button, looks, mask_of
+from solver.files.typed import typed_amount
 from solver.scenes import CATALOGUE
 from solver.settings.definitions import (
     CurveParameter,
@@ -269,7 +270,7 @@ class SettingControl:
         """Take a value that was typed; an empty text means the default."""
         try:
             if text:
-                value = typed(text, self._unit, self._about.unit)
+                value = typed_amount(text, self._unit, self._about.unit)
             else:
                 value = self._definition.default
         except ValueError as problem:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from difflib import get_close_matches
 from typing import Any
 from urllib.parse import parse_qsl, quote
@@ -24,11 +25,12 @@ from app.lessons.catalogue import (
 from app.refusals import message_of
 from app.state import WHAT_IF, PageState, default_settings
 from solver.files.saved import dump
+from solver.files.typed import typed_value
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings.definitions import SettingGroup, title_of
 from solver.settings.scene import Settings
-from solver.settings.values import checked_value, parse
+from solver.settings.values import checked_value
 
 ALIKE = 0.6
 """Likeness of a name to the one that it is taken for, at least."""
@@ -242,8 +244,7 @@ def read(query: str, present: Settings | None = None) -> tuple[Shown, str]:
     if "interface" in pairs:
         shown["interface"] = pairs.pop("interface")
     base = _with_file(base, pairs, present, refused)
-    values = {name: parse(text) for name, text in pairs.items()}
-    shown["settings"] = _together(base, values, refused)
+    shown["settings"] = _together(base, _typed(base, pairs, refused), refused)
     shown["question"] = question
     # Beside another tab the question may be that of a scene before.
     if shown.get("tab") == WHAT_IF:
@@ -291,7 +292,7 @@ def _checked(pairs: dict[str, str], refused: list[str]) -> Shown:
         try:
             # The choices of a selector are texts, which may look like numbers.
             if not isinstance(definition, param.Selector):
-                value = parse(value)
+                value = typed_value(value, name, definition)
             allowed[name] = checked_value(definition, name, value)
         except RefusedError as refusal:
             refused.append(str(refusal))
@@ -338,6 +339,20 @@ def _proposal(kind: str, name: str) -> str:
     if near:
         return f"did you mean {near[0]}?"
     return f"choose one under {kind.capitalize()}s"
+
+
+def _typed(
+    base: Settings, pairs: Mapping[str, str], refused: list[str]
+) -> dict[str, Any]:
+    """Values of settings in an address; refuse those of another unit."""
+    definitions = base.definitions()
+    values = {}
+    for name, text in pairs.items():
+        try:
+            values[name] = typed_value(text, name, definitions.get(name))
+        except RefusedError as refusal:
+            refused.append(message_of(refusal, base))
+    return values
 
 
 def _together(base: Settings, values: dict[str, Any], refused: list[str]) -> Settings:

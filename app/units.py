@@ -7,9 +7,7 @@ from functools import cache
 
 import param
 
-from solver.files.amounts import Unit, number, sizes_of, unit_for
-from solver.files.numerals import leading_number
-from solver.files.units import size_in
+from solver.files.amounts import Unit, number, unit_for
 from solver.scenes import CATALOGUE
 from solver.settings.definitions import Parameter, properties_of
 
@@ -43,25 +41,6 @@ def units_of_points(scene: str, name: str, units: tuple[str, ...]) -> tuple[Unit
     if default.curve_units(name) != units:
         sizes[1] = OTHER_SIZES.get(units[1], 1.0)
     return tuple(unit_for(size, unit) for size, unit in zip(sizes, units, strict=True))
-
-
-def typed(text: str, unit: Unit, si: str) -> float:
-    """Value in SI of a typed number, in a default unit or a typed one.
-
-    Raises
-    ------
-    ValueError
-        If the text is no number, or its unit is of another quantity; it says what to
-        write instead.
-    """
-    value, behind = leading_number(text)
-    if not math.isfinite(value):
-        raise ValueError("write a number")
-    sizes = {**sizes_of(si), "": unit.factor, unit.name: unit.factor}
-    size = sizes.get(behind) or size_in(behind, si)
-    if size is None:
-        raise ValueError(f"write a number in {unit.name or 'no unit'}")
-    return float(f"{value * size:.15g}")
 
 
 def settled(value: float, size: float) -> float:

@@ -338,7 +338,11 @@ class Function:
 
 
 class AnyOf:
-    """Values of any of some kinds; the last kind describes the flaw of other values."""
+    """Values of any of some kinds.
+
+    Of other values the last kind describes the flaw, and of a number the kind of
+    numbers.
+    """
 
     def __init__(self, *kinds: Kind) -> None:
         self._kinds = kinds
@@ -350,14 +354,18 @@ class AnyOf:
 
     def flaw(self, value: Any) -> Flaw | None:
         """Find the flaw of a value."""
-        flaw = None
+        described: Flaw | None = None
+        is_of_numbers = False
         for kind in self._kinds:
             flaw = kind.flaw(value)
             if flaw is None:
                 return None
-        if flaw is None:
+            if not is_of_numbers:
+                described = flaw
+            is_of_numbers = isinstance(kind, Number) and is_number(value)
+        if described is None:
             return None
-        return Flaw(flaw.shown, self.allowed, flaw.remedy)
+        return Flaw(described.shown, self.allowed, described.remedy)
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,9 @@ import param
 
 from app.refusals import message_of
 from app.state import SEARCH, answer
-from app.units import typed, unit_of
+from app.units import unit_of
 from app.worker.references import has_reference
+from solver.files.typed import typed_amount
 from solver.refusal import RefusedError
 from solver.settings.definitions import (
     CurveParameter,
@@ -318,7 +319,7 @@ class SettingRange:
             si = properties_of(definition).unit
             try:
                 values = _converted(
-                    values, lambda text: f"{typed(text, unit, si):.12g}"
+                    values, lambda text: f"{typed_amount(text, unit, si):.12g}"
                 )
             except ValueError as problem:
                 label = self.values.label

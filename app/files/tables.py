@@ -6,10 +6,12 @@ from app.state import PageState
 from solver.discrete.structure import Axes
 from solver.files.columns import column_of
 from solver.files.curves import curve_of, path_doubts
+from solver.files.disk import LARGEST
 from solver.files.tables import Table, read_table
 from solver.scenes.remarks import ends_of_tables
 from solver.settings.definitions import CurveParameter, properties_of, title_of
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError
 from solver.study.comparison import OtherResults, results_in
 from solver.study.measured_loop import MeasuredLoop, loop_in
 from solver.study.table_use import Use, use_of
@@ -71,6 +73,10 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
 
 def table_of(data: bytes | str, source: str) -> Table:
     """Read the table in a file of any format."""
+    if len(data) > LARGEST:
+        most = f"a table of at most {LARGEST // 1_000_000} MB"
+        remedy = "leave out lines, or give it whole to the command compare"
+        raise SettingError("the table", source, most, remedy)
     return read_table(data, source, "the table", "a table of time and value")
 
 

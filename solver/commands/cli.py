@@ -21,6 +21,7 @@ from solver.commands.console import (
     announce,
     given,
     names_in,
+    number_in,
     print_json,
     refusing,
     warn,
@@ -51,7 +52,7 @@ from solver.study.quantities.finished import (
     figures_of,
     known_reference,
 )
-from solver.study.quantities.quantity import Quantity
+from solver.study.quantities.quantity import NEVER, Quantity
 
 DESCRIPTION = (
     "Commands of `python -m solver`: run a scene, list what there is, measure, draw "
@@ -155,14 +156,12 @@ def _add_run(commands: Any) -> None:
     )
     run.add_argument(
         "--limit",
-        type=float,
         metavar="SECONDS",
         help="end after so long with what there is by then; the reference is given up "
         "likewise",
     )
     run.add_argument(
         "--slab",
-        type=int,
         metavar="INSTANTS",
         help="solve slab after slab of so many instants: those of a cycle, where a "
         "load has many",
@@ -179,10 +178,10 @@ def _add_run(commands: Any) -> None:
 def _run(chosen: argparse.Namespace) -> int:
     """Run a scene to its stop rule; print its key figures, and write its result."""
     limit = _limit(chosen)
+    slab = number_in(chosen, "slab", "a number of instants from 1", is_whole=True)
     asked = [reading(name) for name in names_in(chosen.of) if name]
     if chosen.out is not None:
-        with refusing(chosen.out, CAN_BE_WRITTEN):  # before the run, not after it
-            check_place(chosen.out)
+        _check_result_file(chosen.out)
     settings, tables = given(chosen)
     began = time.perf_counter()
     problem = discretise(settings)
@@ -197,7 +196,7 @@ def _run(chosen: argparse.Namespace) -> int:
         known = _known(problem, limit)
     else:
         known = KnownReference()
-    solution = _solved(chosen, settings, problem, known, asked, limit, spent)
+    solution = _solved(chosen, settings, problem, known, asked, limit, slab, spent)
     if chosen.out is not None:
         with refusing(chosen.out, CAN_BE_WRITTEN):
             if for_paraview:
@@ -211,18 +210,29 @@ def _run(chosen: argparse.Namespace) -> int:
     return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 
+def _check_result_file(out: Path) -> None:
+    """Refuse a result file that cannot be written, before the run and not after it."""
+    if out.suffix not in RESULTS and not out.is_dir():
+        raise SettingError(
+            "--out", str(out), "FILE.npz, or FILE.pvd for ParaView", "end it so"
+        )
+    with refusing(out, CAN_BE_WRITTEN):
+        check_place(out)
+
+
+RESULTS = ".npz", PARAVIEW
+"""Ends of the names of result files."""
+LIMITS = "seconds above 0"
 CAN_BE_WRITTEN = "a file in an existing folder that can be written"
 
 
 def _limit(chosen: argparse.Namespace) -> float:
     """Time limit of a run, s; infinite without one."""
-    if chosen.limit is None:
+    limit: float | None = number_in(chosen, "limit", LIMITS, "s")
+    if limit is None:
         return math.inf
-    limit: float = chosen.limit
-    if not 0.0 < limit < math.inf:
-        raise SettingError(
-            "--limit", limit, "seconds above 0", "give more, or leave it out"
-        )
+    if not limit > 0.0:
+        raise SettingError("--limit", limit, LIMITS, "give more, or leave it out")
     return limit
 
 
@@ -233,6 +243,7 @@ def _solved(
     known: KnownReference,
     asked: Sequence[Quantity],
     limit: float,
+    slab: int | None,
     spent: float,
 ) -> Solution:
     """Solve a problem as a whole or in slabs, with errors to a known reference.
@@ -244,10 +255,8 @@ def _solved(
     distance = None
     if known.reference is not None:
         distance = distance_to(known.reference, problem)
-    if chosen.slab is not None:
-        return solve_in_slabs(
-            problem, method, chosen.slab, distance=distance, spent=spent
-        )
+    if slab is not None:
+        return solve_in_slabs(problem, method, slab, distance=distance, spent=spent)
     reads_indicators = any(quantity.reads == "indicators" for quantity in asked)
     watch = chosen.reference or reads_indicators
     return solve(problem, method, distance=distance, watch=watch, spent=spent)
@@ -302,7 +311,10 @@ def _print_figures(
         figure.name: _key_figure_entry(run, figure) for figure in of_loop
     }
     if asked:
-        figures["quantities"] = {quantity.name: quantity(run) for quantity in asked}
+        values = {quantity.name: quantity(run) for quantity in asked}
+        figures["quantities"] = values
+        # JSON has no infinity: null alone would say that a run has no such value.
+        figures["never"] = [name for name in values if math.isinf(values[name])]
     figures["tables"] = tables
     figures["settings"] = run.settings.values()
     print_json(figures)
@@ -353,6 +365,8 @@ def _number(value: float, unit: str) -> str:
     """Text of a number with its unit."""
     if math.isnan(value):
         return "none"
+    if math.isinf(value):
+        return NEVER
     return f"{value:.6g} {unit}".strip()
 
 

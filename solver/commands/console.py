@@ -15,10 +15,12 @@ from pathlib import Path
 from typing import Any
 
 from solver.discrete.problem import Problem
-from solver.files.disk import check_place, read_bytes, why
+from solver.files.amounts import Unit
+from solver.files.disk import LARGEST_RESULTS, check_place, read_bytes, why
 from solver.files.paraview import PARAVIEW, contacts_of_series
 from solver.files.saved import settings_from_command
 from solver.files.tables import Table, read_table
+from solver.files.typed import typed_amount
 from solver.latin.end.cost import run_cost
 from solver.scenes.method import method_of
 from solver.scenes.remarks import remarks_before
@@ -69,14 +71,41 @@ def names_in(options: Sequence[str]) -> list[str]:
     return [name.strip() for name in ",".join(options).split(",")]
 
 
+def number_in(
+    chosen: argparse.Namespace,
+    option: str,
+    allowed: str,
+    unit: str = "",
+    *,
+    is_whole: bool = False,
+) -> Any:
+    """Number in an option, in a unit, or None if it is not given.
+
+    It is read as settings are. Where it is to be whole it is an integer.
+    """
+    text = getattr(chosen, option)
+    if not isinstance(text, str):
+        return text
+    refuse = partial(SettingError, f"--{option}", text, allowed)
+    try:
+        value = typed_amount(text, Unit(unit), unit)
+    except ValueError as flaw:
+        raise refuse(str(flaw)) from None
+    if not is_whole:
+        return value
+    if value != int(value):
+        raise refuse("write a whole number")
+    return int(value)
+
+
 def read_brought(chosen: argparse.Namespace, allowed: str) -> Table:
     """Read the table of the option `--with`: a file, or a series for ParaView."""
     refuse = partial(SettingError, "--with", str(chosen.file), allowed)
-    data: bytes | str = read_bytes(chosen.file, refuse)
+    data: bytes | str = read_bytes(chosen.file, refuse, LARGEST_RESULTS)
     if chosen.file.suffix == PARAVIEW:
         interface = getattr(chosen, "interface", "")
         data = contacts_of_series(chosen.file, refuse, interface)
-    return read_table(data, chosen.file.name, "--with", allowed)
+    return read_table(data, chosen.file.name, "--with", allowed, LARGEST_RESULTS)
 
 
 def warn(*messages: str) -> None:

@@ -14,6 +14,7 @@ from solver.commands.console import (
     add_command,
     given,
     names_in,
+    number_in,
     postponed_interrupt,
     print_files,
     print_tables,
@@ -73,9 +74,7 @@ def _add_study(commands: Any) -> None:
     parser = add_command(
         commands, "study", purpose, _study, of_scene=True, to_folder=True
     )
-    parser.add_argument(
-        "--repeats", type=int, default=5, help="passes whose median is taken"
-    )
+    parser.add_argument("--repeats", default=5, help="passes whose median is taken")
     parser.add_argument(
         "--large", action="store_true", help="sizes that take minutes, too"
     )
@@ -90,10 +89,8 @@ def _add_stability(commands: Any) -> None:
     )
     kinds = parser.add_mutually_exclusive_group()
     kinds.add_argument("--quick", action="store_true", help="a quarter of the cases")
-    kinds.add_argument(
-        "--random", type=int, metavar="N", help="so many random runs, instead"
-    )
-    parser.add_argument("--seed", type=int, default=1, help="of the random runs")
+    kinds.add_argument("--random", metavar="N", help="so many random runs, instead")
+    parser.add_argument("--seed", default=1, help="of the random runs")
 
 
 def _add_sweep(commands: Any) -> None:
@@ -113,9 +110,7 @@ def _add_sweep(commands: Any) -> None:
         help="what is asked of a run",
     )
     parser.add_argument("--on", default="processes", metavar="EXECUTOR", help=FORMS)
-    parser.add_argument(
-        "--limit", type=float, default=LIMIT, help="seconds that a run may take"
-    )
+    parser.add_argument("--limit", default=LIMIT, help="seconds that a run may take")
     parser.add_argument(
         "--cold", action="store_true", help="start no run from its neighbour"
     )
@@ -136,18 +131,18 @@ def _figures(chosen: argparse.Namespace) -> int:
 
 def _study(chosen: argparse.Namespace) -> int:
     """Measure error over run time of all methods, and run time over size."""
-    if chosen.repeats < 1:
-        raise SettingError(
-            "--repeats", chosen.repeats, "a whole number from 1", "give 1 or more"
-        )
+    can = "a whole number from 1"
+    repeats: int = number_in(chosen, "repeats", can, is_whole=True)
+    if repeats < 1:
+        raise SettingError("--repeats", repeats, can, "give 1 or more")
     settings, _ = given(chosen)
     with writing(chosen.out):
         # Curves are written at once: sizes take longer, and may be interrupted.
-        curves = error_against_time(settings, chosen.repeats)
+        curves = error_against_time(settings, repeats)
         study.write_curves(curves, chosen.out)
         sizes = times_at_sizes(settings, large=chosen.large)
-        study.write_study(settings, chosen.repeats, curves, sizes, chosen.out)
-    print("\n".join(study.conditions(settings, chosen.repeats)), end="\n\n")
+        study.write_study(settings, repeats, curves, sizes, chosen.out)
+    print("\n".join(study.conditions(settings, repeats)), end="\n\n")
     print(aligned(study.table(curves)))
     print()
     print(aligned(study.sizes_table(settings, sizes)))
@@ -160,15 +155,11 @@ def _study(chosen: argparse.Namespace) -> int:
 def _stability(chosen: argparse.Namespace) -> int:
     """Run stiff and extreme cases, or random ones, and judge each."""
     scenes = [scene_settings(scene).scene for scene in chosen.scenes]
-    for name, minimum in (("random", 1), ("seed", 0)):
-        value = getattr(chosen, name)
-        if value is not None and value < minimum:
-            raise SettingError(
-                f"--{name}", value, f"a whole number from {minimum}", "raise it"
-            )
+    count = _whole(chosen, "random", 1)
+    seed = _whole(chosen, "seed", 0)
     cases = extreme_cases(scenes, quick=chosen.quick)
-    if chosen.random is not None:
-        cases = random_cases(scenes, chosen.random, chosen.seed)
+    if count is not None:
+        cases = random_cases(scenes, count, seed or 0)
     runs: list[Row] = []
     with writing(chosen.out, *stability.FILES):
         print(head_of(stability.SHOWN))
@@ -181,6 +172,15 @@ def _stability(chosen: argparse.Namespace) -> int:
             print("\n".join(stability.last_lines(runs)))
             print(f"{len(stability.FILES)} files in {chosen.out}")
     return 0 if all(map(passed, runs)) else 1
+
+
+def _whole(chosen: argparse.Namespace, option: str, minimum: int) -> int | None:
+    """Whole number in an option, from a minimum on; None if it is not given."""
+    can = f"a whole number from {minimum}"
+    value: int | None = number_in(chosen, option, can, is_whole=True)
+    if value is not None and value < minimum:
+        raise SettingError(f"--{option}", value, can, "raise it")
+    return value
 
 
 def _proof(chosen: argparse.Namespace) -> int:
@@ -206,8 +206,9 @@ def _sweep(chosen: argparse.Namespace) -> int:
     # Without a range the sweep is a single run, in one row.
     vary = chosen.vary or [f"friction={settings.friction!r}"]
     plan = plan_of(settings, vary, names_in(chosen.of))
-    if not chosen.limit > 0.0:
-        raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
+    limit: float = number_in(chosen, "limit", "seconds above zero", "s")
+    if not limit > 0.0:
+        raise SettingError("--limit", limit, "seconds above zero", "raise it")
     print_tables(tables)
     for name in plan.idle():
         warn(f"{name} does nothing with the other settings as they are")
@@ -215,7 +216,7 @@ def _sweep(chosen: argparse.Namespace) -> int:
         rows = rows_in(chosen.out / TABLE, plan)
         is_ended = False
         try:
-            _run(plan, rows, chosen)
+            _run(plan, rows, chosen, limit)
         except KeyboardInterrupt:
             is_ended = True
             warn("stopped; the same command goes on from here")
@@ -232,16 +233,19 @@ def _sweep(chosen: argparse.Namespace) -> int:
     return 0 if is_whole and all(row.holds for row in by_number) else 1
 
 
-def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> None:
+def _run(
+    plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace, limit: float
+) -> None:
     """Run the rest of a plan, append its rows to the table, and print the progress.
 
-    Runs that were stuck or lost before are tried again.
+    No run may take longer than the limit, s. Runs that were stuck or lost before are
+    tried again.
     """
     known = {row.number for row in rows.values() if row.ending not in (STUCK, LOST)}
     table = chosen.out / TABLE
     with (
         postponed_interrupt() as is_interrupted,
-        opened(chosen.on, longest_wait(chosen.limit)) as executor,
+        opened(chosen.on, longest_wait(limit)) as executor,
     ):
         # The table is written again, as its last line may have been cut off.
         write(table, csv_of(plan, list(rows.values())))
@@ -249,7 +253,7 @@ def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> N
             plan,
             executor,
             done=set(known),
-            limit=chosen.limit,
+            limit=limit,
             warm=not chosen.cold,
             cancelled=is_interrupted,
         )

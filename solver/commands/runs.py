@@ -47,7 +47,7 @@ from solver.study.mesh import (
     value_on,
     which_to_refine,
 )
-from solver.study.quantities import reading
+from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.quantity import Quantity
 from solver.study.table_use import brought_in
 
@@ -96,9 +96,9 @@ def _mesh(chosen: argparse.Namespace) -> int:
     settings, _ = given(chosen)
     asked = reading(chosen.of)
     if not decides(settings, asked):
-        can = "a quantity of what a run comes to, that this scene has"
+        known = [name for name, each in QUANTITIES.items() if decides(settings, each)]
         raise SettingError(
-            "--of", chosen.of, can, "`python -m solver sweep` lists them"
+            "--of", chosen.of, ", ".join(known), "choose a quantity of this scene"
         )
     values: dict[str, float] = {}
     if not settings.MESH:
@@ -146,6 +146,7 @@ def _compare(chosen: argparse.Namespace) -> int:
     structure = settings.structure()
     brought = brought_in(table, settings, structure.axes)
     problem = discretise(settings)
+    _check_interface(chosen.interface, problem)
     comparison: LoopComparison | Comparison
     if isinstance(brought, MeasuredLoop):
         comparison = LoopComparison(brought, structure.loop(problem), problem)
@@ -165,15 +166,18 @@ def _compare(chosen: argparse.Namespace) -> int:
     return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 
+def _check_interface(interface: str, problem: Problem) -> None:
+    """Refuse the name of an interface that a problem does not have."""
+    if interface and interface not in problem.contacts:
+        can = ", ".join(problem.contacts)
+        raise SettingError("--interface", interface, can, "choose one of these")
+
+
 def _comparison(
     chosen: argparse.Namespace, results: OtherResults, problem: Problem
 ) -> Comparison:
     """Compare with another program along an interface; refuse too few common points."""
-    interface = chosen.interface
-    if interface and interface not in problem.contacts:
-        can = ", ".join(problem.contacts)
-        raise SettingError("--interface", interface, can, "choose one of these")
-    comparison = Comparison(results, problem, interface)
+    comparison = Comparison(results, problem, chosen.interface)
     if comparison.counted < FEWEST:
         can = f"at least {FEWEST} rows that both cover"
         raise SettingError(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
@@ -9,11 +11,22 @@ from scipy.sparse.csgraph import connected_components
 from solver.arrays import Indices
 from solver.discrete.problem import Problem
 from solver.laws import Contact
-from solver.refusal import RefusedError
+from solver.refusal import RefusedError, Words
 
 
 class LooseBodiesError(RefusedError):
     """Refused structure: bodies can move though all contacts are closed and stick."""
+
+    @classmethod
+    def of(cls, names: Sequence[str]) -> LooseBodiesError:
+        """Refusal of a structure with loose bodies of given names."""
+        return cls(
+            "Bodies.held",
+            Words(f"displacements that leave free: {', '.join(names)}"),
+            "holds and joints that leave no body free to move or to turn, where all "
+            "contacts are closed and stick",
+            "hold one more node or axis, or add a joint",
+        )
 
 
 def loose_bodies(problem: Problem) -> Indices:

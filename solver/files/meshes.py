@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from solver.discrete.plane.makers.named_mesh_refused import check_named
-from solver.files.disk import LARGEST, TOO_LARGE, read_bytes
+from solver.files.disk import LARGEST, read_bytes, too_large
 from solver.refusal import RefusedError, Words
 from solver.scenes.mesh_files import ABAQUS, CAN, GMSH, HEAD, as_text, read_mesh
 from solver.settings.definitions import TextParameter
@@ -28,7 +28,7 @@ def text_of_mesh(data: bytes, source: str, name: str = "mesh") -> str:
         For a file that is refused.
     """
     if len(data) > LARGEST:
-        raise SettingError(name, source, CAN, TOO_LARGE)
+        raise SettingError(name, source, CAN, too_large())
     try:
         mesh = read_mesh(data, source)
         check_named(mesh)

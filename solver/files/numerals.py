@@ -50,6 +50,8 @@ _DROPPED = str.maketrans("", "", _APART)
 _MINUS = str.maketrans("−–", "--")
 SIGNS = ".,"
 """Decimal signs."""
+LONGEST = 64
+"""Largest number of characters of a typed number: each start is tried as one."""
 
 
 def _pattern(decimal: str, thousands: str) -> re.Pattern[str]:
@@ -125,7 +127,7 @@ def leading_number(text: str) -> tuple[float, str]:
     """
     plain = text.strip()
     # The longest start that is a number: a blank may part thousands, or the unit.
-    for end in range(len(plain), 0, -1):
+    for end in range(min(len(plain), LONGEST), 0, -1):
         start = plain[:end].rstrip()
         signs = decimal_signs(start)
         if signs:

@@ -15,16 +15,17 @@ from typing import Any, get_type_hints
 import numpy as np
 
 from solver.files.curves import messages, read_tables
-from solver.files.disk import LARGEST, TOO_LARGE, read_bytes, whole_file
+from solver.files.disk import LARGEST, read_bytes, too_large, whole_file
 from solver.files.meshes import read_meshes
 from solver.files.table_lines import text_of
+from solver.files.typed import typed_numbers, typed_value
 from solver.latin import Answer, Iterate, Solution
 from solver.reference.distance import determinate_forces, held_instants
 from solver.refusal import Words
 from solver.scenes import CATALOGUE
 from solver.scenes.remarks import remarks_on
 from solver.settings.scene import Settings
-from solver.settings.values import SettingError, parse
+from solver.settings.values import SettingError
 
 WORDS = {
     str: "text",
@@ -72,7 +73,8 @@ def read_settings(data: bytes | str, source: str) -> tuple[Settings, Mapping[str
     values = _parsed(data, "the settings file", source)
     values.pop("case", None)
     number = format_in(values)
-    settings = scene_settings(values.pop("scene", None)).checked(values)
+    kind = scene_settings(values.pop("scene", None))
+    settings = kind.checked(typed_numbers(values, kind.definitions()))
     return settings, meant_before(settings, values, number)
 
 
@@ -125,6 +127,7 @@ def settings_from_command(
         values.pop("case", None)
         number = format_in(values)
     kind = scene_settings(values.pop("scene", None))
+    values = typed_numbers(values, kind.definitions())
     # Names of files are replaced by points before anything is checked.
     tables = read_tables(kind, values, Path(scene).parent)
     read_meshes(kind, values, Path(scene).parent)
@@ -150,14 +153,20 @@ def settings_from_command(
 def _changes_in(assignments: Sequence[str], kind: type[Settings]) -> dict[str, object]:
     """Values of `NAME=VALUE` texts by name; values of unknown names stay texts."""
     changes: dict[str, object] = {}
+    definitions = kind.definitions()
     for assignment in assignments:
-        name, equals, text = assignment.partition("=")
+        before, equals, text = assignment.partition("=")
         if not equals:
             raise SettingError(
                 "--set", assignment, "NAME=VALUE", "write an equals sign"
             )
-        if name in kind.definitions():
-            changes[name] = parse(text)
+        name = before.strip()
+        if not name:
+            raise SettingError(
+                "--set", assignment, "NAME=VALUE", "write a name before the sign"
+            )
+        if name in definitions:
+            changes[name] = typed_value(text, name, definitions[name])
         else:
             changes[name] = text
     return changes
@@ -172,7 +181,7 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
 def _parsed(data: bytes | str, name: str, shown: str) -> dict[str, Any]:
     """Parse a text in TOML; refusals have the name `name`, and show `shown`."""
     if len(data) > LARGEST:
-        raise SettingError(name, shown, "TOML", TOO_LARGE)
+        raise SettingError(name, shown, "TOML", too_large())
     refuse = partial(SettingError, name, shown, "TOML")
     text = text_of(data, refuse, "save the settings again")
     try:

@@ -69,7 +69,7 @@ import numpy as np
 
 from solver.arrays import Array, Flags, Indices, read_only
 from solver.files.columns import TableColumn
-from solver.files.disk import LARGEST, TOO_LARGE, Refuse
+from solver.files.disk import LARGEST, Refuse, too_large
 from solver.files.numerals import SIGNS, decimal_signs, is_gap, number
 from solver.files.table_blocks import Block, block_of, fitted, headed
 from solver.files.table_lines import Line, lines_of_text
@@ -328,17 +328,19 @@ def _named(lines: Sequence[int] | Indices) -> str:
     return f"lines {numbers}{more}"
 
 
-def read_table(data: bytes | str, source: str, name: str, allowed: str) -> Table:
+def read_table(
+    data: bytes | str, source: str, name: str, allowed: str, largest: int = LARGEST
+) -> Table:
     """Table of a file or a text, as described above.
 
-    A file that is too large, no text or without numbers is refused, and so are lines
-    that do not fit the head. Refusals have the name of a setting or an option, and
-    words on what is allowed.
+    A file of more than `largest` bytes, no text or without numbers is refused, and so
+    are lines that do not fit the head. Refusals have the name of a setting or an
+    option, and words on what is allowed.
     """
     refuse = partial(SettingError, name, source, allowed)
     # Before anything is parsed, as that takes time and memory by its size.
-    if len(data) > LARGEST:
-        raise refuse(TOO_LARGE)
+    if len(data) > largest:
+        raise refuse(too_large(largest))
     remarks: list[str] = []
     if isinstance(data, bytes) and is_archive(data):
         separator = "\t"

@@ -40,7 +40,7 @@ def remarks_before(settings: Settings, assignments: Sequence[str]) -> list[str]:
     """
     remarks = []
     defaults = settings.defaults("paper")
-    names = dict.fromkeys(assignment.partition("=")[0] for assignment in assignments)
+    names = dict.fromkeys(each.partition("=")[0].strip() for each in assignments)
     for name in names:
         is_changed = getattr(settings, name) != defaults[name]
         if is_changed and not settings.applies(name):

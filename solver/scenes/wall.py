@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
@@ -23,6 +24,7 @@ from solver.settings.definitions import (
     redefined,
 )
 from solver.settings.load_paths import HELD, PRESETS, Preset
+from solver.settings.profiles import UNSEEN
 from solver.settings.scene import Icon
 
 SETTLEMENTS = {
@@ -347,10 +349,31 @@ class WallSettings(RectangleSettings):
         """Check whether ground below the wall settles: it is rigid otherwise."""
         first, last = self._settled
         is_above = [
-            brick.y == 0 and brick.x < last and brick.x + brick.columns > first
+            min(last, brick.x + brick.columns) > max(first, brick.x)
             for brick in self._bricks
+            if brick.y == 0
         ]
         return self.is_active("settlement_load") and any(is_above)
+
+    def left_out(self) -> Iterator[str]:
+        """Yield a sentence on ground that settles elsewhere than it should."""
+        yield from super().left_out()
+        if not self.is_active("settlement_load"):
+            return
+        wanted = np.array([self.settled_from, self.settled_from + self.settled_length])
+        element = self.length / self.elements
+        found = element * np.array(self._settled)
+        if not self._settles:
+            yield (
+                f"settled_length: nothing settles below the wall from {wanted[0]:.4g} "
+                f"to {wanted[1]:.4g} m, in elements of {element:.4g} m"
+            )
+        elif np.abs(found - wanted).max() > UNSEEN * self.settled_length:
+            yield (
+                f"settled_length: the ground settles from {found[0]:.4g} to "
+                f"{found[1]:.4g} m, as it ends at whole elements; more elements come "
+                "nearer"
+            )
 
     @property
     def _on_ground(self) -> float:

@@ -94,12 +94,13 @@ class OtherResults:
         )
 
 
-def results_in(table: Table, settings: Settings) -> OtherResults:
+def results_in(table: Table, settings: Settings, most: float = MOST) -> OtherResults:
     """Read the results of another program for a scene from a table.
 
     The head names the columns x (m), t (s), and friction force or displacement, with
     units if they are others; where several interfaces have rows, a column contact names
-    them. Further columns are ignored, and rows may have any order.
+    them. Further columns are ignored, and rows may have any order. There may be `most`
+    of them.
 
     Raises
     ------
@@ -109,6 +110,7 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
         during the run; for a displacement of other scenes than a single rod.
     """
     table = table.given_as("the results", CAN)
+    _check_count(table, most)
     kind = settings.kind
     quantity, columns = _columns(table)
     if quantity == DISPLACEMENT and kind != "rod":
@@ -121,7 +123,7 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
         _refuse_nodal_forces(table, column, unit)
     used = {"x": (position, "m"), "t": (time, "s"), quantity: (column, unit)}
     table, names = _with_contacts(table)
-    reading = in_si(table, used)
+    reading = in_si(table, used, most)
     x, t, values = reading.numbers
     _check_places(x, reading.lines, settings.contact_length, table.refuse)
     _check_times(t, settings.duration, table.refuse)
@@ -137,6 +139,14 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
         message=reading.message,
         contacts=names,
     )
+
+
+def _check_count(table: Table, most: float) -> None:
+    """Refuse more than `most` rows."""
+    count = len(table.lines)
+    if count > most:
+        remedy = "leave some out, or give all of them to the command compare"
+        raise table.refuse(f"it has {count} rows, and may have {most:.0f}: {remedy}")
 
 
 def _with_contacts(table: Table) -> tuple[Table, NDArray[np.str_] | None]:
@@ -162,17 +172,19 @@ def _refuse_nodal_forces(table: Table, column: TableColumn, unit: str) -> None:
         column.size(unit, lambda remedy: table.refuse(f"{remedy}; {nodal}"))
 
 
-def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> Reading:
+def in_si(
+    table: Table, used: Mapping[str, tuple[TableColumn, str]], most: float = MOST
+) -> Reading:
     """Read columns, given with their units by name, as numbers in SI.
 
     Raises
     ------
     SettingError
-        For too many rows.
+        For more than `most` rows.
     """
     count = len(table.lines)
-    if count > MOST:
-        raise table.refuse(f"it has {count} rows, and may have {MOST}: leave some out")
+    if count > most:
+        raise table.refuse(f"it has {count} rows, and may have {most}: leave some out")
     columns, units = zip(*used.values(), strict=True)
     return table.read(columns, list(used), units)
 

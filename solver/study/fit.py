@@ -365,6 +365,9 @@ def _correlation(jacobian: Array, blind: Array, is_known: Flags) -> Array:
     deviations = np.sqrt(np.diag(covariance))
     with np.errstate(invalid="ignore", divide="ignore"):
         correlation = covariance / np.outer(deviations, deviations)
+    # Up to rounding it is so already.
+    correlation = np.clip(correlation, -1.0, 1.0)
+    np.fill_diagonal(correlation, 1.0)
     are_both_known = np.outer(is_known, is_known)
     return np.asarray(np.where(are_both_known, correlation, np.nan))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from contextlib import suppress
 from enum import StrEnum
 
@@ -53,9 +54,12 @@ def use_of(table: Table, axes: Axes) -> Use:
 def brought_in(
     table: Table, settings: Settings, axes: Axes
 ) -> OtherResults | MeasuredLoop:
-    """Read results, or else a loop, from a table, for a loop of these axes."""
+    """Read results of any size, or else a loop, from a table, for a loop of these axes.
+
+    That takes as long as the table is large: too long for the server of a page.
+    """
     if use_of(table, axes) is Use.RESULTS:
-        return results_in(table, settings)
+        return results_in(table, settings, math.inf)
     return loop_in(table, axes)
 
 

@@ -18,8 +18,9 @@ from app.files.points import CurveDialog
 from app.messages import Start
 from app.refusals import advice_in_titles
 from app.state import PageState, default_settings
-from app.units import typed, unit_of
+from app.units import unit_of
 from solver.files.amounts import Unit
+from solver.files.typed import typed_amount
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings.definitions import CurveParameter, TextParameter
@@ -75,7 +76,7 @@ def test_every_setting_has_a_widget_that_shows_its_value_and_takes_others(
         value = held(state, name)
         if control.slider is not None:
             unit = unit_of(definition)
-            assert typed(
+            assert typed_amount(
                 control.field.value, unit, definition.metadata["about"].unit
             ) == (pytest.approx(value, rel=1e-9))
             slide_to_both_ends(control, state)
@@ -411,19 +412,19 @@ def test_points_that_stand_for_a_preset_are_taken_as_they_stand() -> None:
 
 
 def test_a_number_is_read_in_each_unit_of_its_kind() -> None:
-    assert typed("2 d", Unit("s"), "s") == 172800.0
-    assert typed("2 min", Unit("h", 3600.0), "s") == 120.0
-    assert typed("3 N/mm2", Unit("kPa", 1e3), "Pa") == 3e6
+    assert typed_amount("2 d", Unit("s"), "s") == 172800.0
+    assert typed_amount("2 min", Unit("h", 3600.0), "s") == 120.0
+    assert typed_amount("3 N/mm2", Unit("kPa", 1e3), "Pa") == 3e6
     newton = Unit("N")
-    assert typed("2 lbf", newton, "N") == 2 * 4.4482216152605
-    assert typed("1 200", newton, "N") == 1200.0
-    assert typed("1\u202f200,5 kN", newton, "N") == 1200500.0
+    assert typed_amount("2 lbf", newton, "N") == 2 * 4.4482216152605
+    assert typed_amount("1 200", newton, "N") == 1200.0
+    assert typed_amount("1\u202f200,5 kN", newton, "N") == 1200500.0
 
 
 def test_a_number_in_another_unit_is_refused() -> None:
     for text in ("5 kg", "1e", "--3", "5 5"):
         with pytest.raises(ValueError, match="write a number"):
-            typed(text, Unit("kN", 1e3), "N")
+            typed_amount(text, Unit("kN", 1e3), "N")
 
 
 def test_a_preset_of_a_path_is_described_where_it_is_chosen() -> None:

@@ -196,6 +196,56 @@ def test_interrupts_end_a_command_with_a_line_and_their_code(
     assert message in line
 
 
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["stability", "--random", "few"], '--random = "few" is refused'),
+        (["stability", "--random", "1", "--seed", "1e400"], '--seed = "1e400" is'),
+        (["stability", "--seed", "-1"], "--seed = -1 is refused"),
+        (["study", "bar", "--repeats", "1.5"], "write a whole number"),
+        (["sweep", "bar", "--of", "force", "--limit", "x"], "seconds above zero"),
+        (["sweep", "bar", "--of", "force", "--vary", "elements=2.5:9:3"], "two ends"),
+        (["mesh", "bar", "--of", "seconds"], "peak_displacement, displacement, force,"),
+        (["compare", "bar", "--with", "loop.csv", "--interface", "x"], "--interface"),
+    ],
+    ids=lambda case: " ".join(case),
+)
+def test_foolish_options_are_refused_by_name(
+    tmp_path, monkeypatch, capsys, arguments, words
+):
+    monkeypatch.chdir(tmp_path)
+    rows = [f"{1e-4 * row},{90.0 * row}" for row in range(8)]
+    loop = "\n".join(["displacement,force", *rows])
+    (tmp_path / "loop.csv").write_text(loop, encoding="utf-8")
+    assert main(arguments) == 2
+    message = capsys.readouterr().err.splitlines()[-1]
+    assert words in message
+    assert "; allowed: " in message
+
+
+def test_what_never_comes_is_told_from_what_a_run_does_not_have(capsys):
+    """A bar on strong ground never slips as a whole, and has no thrust."""
+    names = "first_slip_time@1,thrust,force"
+    command = ["run", "bar", *SMALL, "--no-reference", "--of", names]
+    assert main([*command, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    never = "first_slip_time@1.0"
+    assert (found["quantities"][never], found["quantities"]["thrust"]) == (None, None)
+    assert found["quantities"]["force"] > 0.0
+    assert found["never"] == [never]
+    assert main(command) == 0
+    figures = printed_figures(capsys.readouterr().out)
+    assert figures[never] == "never"
+    assert figures["thrust"] == "none"
+
+
+def test_a_limit_is_read_as_a_setting_is(capsys):
+    command = ["run", "bar", *SMALL, "--no-reference", "--slab", "41."]
+    assert main([*command, "--limit", "2 min"]) == 0
+    capsys.readouterr()
+    assert main([*command, "--limit", "1e-6 ms"]) == 1
+
+
 def test_a_closed_output_is_told_in_a_line():
     command = f"{sys.executable} -m solver run bar --set peak=0 >&-"
     done = subprocess.run(
@@ -230,6 +280,12 @@ def test_a_fault_of_the_engine_is_no_lack_of_memory(monkeypatch):
         (["bar", "--set", "elements=3"], ["substructures", "10", "1 to elements (3)"]),
         (["bar", "--set", "load=bad.csv"], ["load", "bad.csv", "line 2"]),
         (["bar", "--set", "peak"], ["--set", "NAME=VALUE"]),
+        (["bar", "--set", "=1"], ["--set", "NAME=VALUE", "write a name"]),
+        (["bar", "--set", "load=[[0,0],[.5,9]"], ["load", "close each bracket"]),
+        (["bar", "--limit", "soon"], ["--limit", "soon", "seconds above 0"]),
+        (["bar", "--limit", "2 m"], ["--limit", "2 m", "write a number in s"]),
+        (["bar", "--slab", "1.5"], ["--slab", "1.5", "write a whole number"]),
+        (["bar", "--out", "x.csv"], ["--out", "x.csv", "FILE.npz"]),
         (["bridge"], ["scene", "bridge", "bar"]),
         (["none.toml"], ["settings file", "none.toml"]),
         (

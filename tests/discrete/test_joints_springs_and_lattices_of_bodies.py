@@ -23,6 +23,7 @@ from solver.discrete import (
     Stack,
     discretise,
 )
+from solver.discrete.loose_bodies import LooseBodiesError
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.probes import side_mean
 from solver.reference.incremental import reference_of
@@ -327,6 +328,42 @@ def test_the_softest_body_sets_the_unit_of_stress() -> None:
     stiff = replace(other, young=1e5 * soft.young)
     scales = discretise(replace(structure, bodies=[soft, stiff])).scales
     assert scales.force / scales.displacement == pytest.approx(soft.young)
+
+
+@pytest.mark.parametrize("substructures", [1, 2])
+@pytest.mark.parametrize(
+    ("nodes", "axes"), [([0], [0]), ([0, 1], [1]), ([0], [0, 1]), ([0, 4], [0])]
+)
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_body_that_is_held_too_little_is_refused(
+    shape: str, nodes: list[int], axes: list[int], substructures: int
+) -> None:
+    """Whatever its parts keep of it."""
+    body = Body("block", SHAPES[shape], 2e10, 0.3, substructures=substructures)
+    held = [Held("few", 0, np.array(nodes), axis, ZERO) for axis in axes]
+    with pytest.raises(LooseBodiesError, match="block"):
+        discretise(Bodies([body], [], held, [], TIMES, 1.0))
+
+
+def test_three_components_hold_a_body() -> None:
+    held = [
+        Held("foot", 0, np.array([0, 4]), 1, ZERO),
+        Held("left", 0, np.array([0]), 0, ZERO),
+    ]
+    body = Body("block", LATTICE, 2e10, 0.3)
+    load = Load("pull", 0, np.array([4]), np.ones((1, 2, len(TIMES))))
+    problem = discretise(Bodies([body], [], held, [load], TIMES, 1.0))
+    run = solve(problem, Latin(), watch=False)
+    assert np.all(np.isfinite(run.iterate.displacement))
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_joint_of_known_strength_does_not_hold_a_body_across(shape: str) -> None:
+    size = len(on_each_other(shape).joints[0].nodes)
+    structure = on_each_other(shape, strength=np.full((size, len(TIMES)), 1e5))
+    left = [held for held in structure.held if held.name == "left"]
+    with pytest.raises(LooseBodiesError, match="right"):
+        discretise(replace(structure, held=left))
 
 
 GROUND = block(Body("block", MESH, 2e10, 0.3), 0.1).joints[0]

@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.files.tables import table_of as on_a_page
 from solver.commands.cli import main
 from solver.discrete.problem import Problem
+from solver.files.disk import LARGEST
 from solver.files.tables import read_table
 from solver.reference.distance import determinate_forces
 from solver.reference.incremental import reference_of
@@ -188,3 +190,20 @@ def test_the_command_refuses_in_words(
     command = ["compare", "bar"] + [option.format(path) for option in options]
     assert main(command) == 2
     assert why in capsys.readouterr().err
+
+
+def test_a_command_reads_larger_results_than_a_page(tmp_path, capsys) -> None:
+    """As the contact of a rope at all points and instants, which a page writes."""
+    file = tmp_path / "contact.csv"
+    long = " " * 95
+    rows = [f"{0.9 * row / 41_000:.6f},0.5,1{long}\n" for row in range(41_000)]
+    text = HEAD + "".join(rows)
+    file.write_text(text, encoding="utf-8")
+    assert file.stat().st_size > LARGEST
+    with pytest.raises(SettingError) as refused:
+        on_a_page(text, file.name)
+    assert refused.value.allowed == "a table of at most 4 MB"
+    assert "give it whole to the command compare" in refused.value.remedy
+    command = ["compare", "bar", "--set", "instants=21", "--with", str(file)]
+    assert main(command) == 0
+    assert " of 41000 rows" in capsys.readouterr().out

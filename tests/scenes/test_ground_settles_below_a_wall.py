@@ -7,6 +7,7 @@ import pytest
 
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.plane.rectangles.cap_and_ground import strips_below
+from solver.discrete.probes import reaction
 from solver.latin import solve
 from solver.laws import OPEN
 from solver.reference.distance import distance_to, kkt_residual
@@ -217,3 +218,41 @@ def test_the_first_change_of_the_case_does_as_it_says():
     assert found["less"][0] == pytest.approx(6.0 * BRICK, rel=1e-6)
     last, largest = found["stack"]
     assert 0.9 * largest < last < largest
+
+
+@pytest.mark.parametrize("values", [{"cap": "guided"}, {"bricks": 1, "courses": 1}])
+def test_the_shear_force_on_a_tilted_wall_is_that_of_what_moves_its_top(values):
+    """The ground also carries the weight along the slope."""
+    tilted = SMALL | FEW | {"slope": 5.0, "displacement": 5e-5}
+    settings, problem, answer = made(**tilted | values)
+    sides = [name for name in ("top", "left", "right") if name in problem.held_dofs]
+    held = sum(reaction(problem, name, 0).of(answer) for name in sides)
+    _, force = settings.bodies.loop(problem).along(answer)
+    np.testing.assert_allclose(force, held, atol=1e-6 * np.abs(force).max())
+    along = settings.bodies.weight[0]
+    rubbed = -friction_of_ground(problem, answer)
+    np.testing.assert_allclose(rubbed - force, along, atol=1e-9 * np.abs(rubbed).max())
+    assert np.abs(along).max() > 1e-3 * np.abs(force).max()
+
+
+@pytest.mark.parametrize(
+    ("start", "length", "remark"),
+    [
+        (0.5, 0.25, ""),
+        (0.5, 0.02, "nothing settles below the wall from 0.5 to 0.52 m"),
+        (9.0, 0.25, "nothing settles below the wall from 9 to 9.25 m"),
+        (0.51, 0.25, "settles from 0.5 to 0.75 m, as it ends at whole elements"),
+    ],
+)
+def test_a_run_says_where_ground_settles_elsewhere_than_it_should(
+    start, length, remark
+):
+    """Elements are 0.0625 m long."""
+    placed = {"settled_from": start, "settled_length": length}
+    settings = CATALOGUE["wall"].checked(SETTLES | placed)
+    said = [each for each in settings.left_out() if each.startswith("settled_length: ")]
+    assert len(said) == bool(remark)
+    assert remark in "".join(said)
+    is_settled = bool(np.any(settings.bodies.settlement))
+    assert is_settled == ("nothing" not in remark)
+    assert (settings.bodies.strips > 0) == is_settled

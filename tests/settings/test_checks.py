@@ -15,6 +15,7 @@ from solver.checks import (
     FLAG,
     FUNCTION,
     INSTANTS,
+    NON_NEGATIVE,
     POSITIVE,
     ROWS,
     AnyOf,
@@ -158,6 +159,16 @@ def test_of_a_sequence_and_a_mapping_the_place_of_the_flaw_is_named() -> None:
     flaw = MappingOf(COUNT).flaw({"a": 1, "b": 0})
     assert flaw is not None
     assert flaw.remedy.startswith('"b": ')
+
+
+def test_of_either_a_number_or_an_array_a_number_is_told_its_own_flaw() -> None:
+    either = AnyOf(NON_NEGATIVE, Numbers(((2,),), low=0.0))
+    flaw = either.flaw(-1.0)
+    assert flaw is not None
+    assert flaw.remedy == "give a number in this range"
+    flaw = either.flaw(np.array([0.0, -1.0]))
+    assert flaw is not None
+    assert flaw.remedy == "entry [1] is below zero, raise it"
 
 
 def test_none_is_allowed_only_as_a_default() -> None:

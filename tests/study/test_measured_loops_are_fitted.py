@@ -15,7 +15,7 @@ from solver.files.saved import scene_settings, settings_from_toml
 from solver.files.tables import read_table
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError
-from solver.study.fit import fit
+from solver.study.fit import _correlation, fit
 from solver.study.fit_report import messages
 from solver.study.measured_loop import (
     CAN,
@@ -227,6 +227,16 @@ def test_with_noise_the_settings_of_the_loop_are_within_two_standard_errors() ->
         assert (found.errors / found.nearest.values < 0.05).all()
         assert np.abs(found.correlation[0, 1]) < 0.9
     assert np.mean(within) >= 0.75
+
+
+def test_a_correlation_is_at_most_1_and_that_with_itself_is_1() -> None:
+    """Also where rounding would make it 1.0000000000000002."""
+    random = np.random.default_rng(1)
+    for _ in range(50):
+        jacobian = random.normal(size=(5, 2))
+        found = _correlation(jacobian, np.zeros((0, 2)), np.ones(2, dtype=bool))
+        assert np.abs(found).max() <= 1.0
+        assert np.diagonal(found).tolist() == [1.0, 1.0]
 
 
 def test_settings_determined_as_a_product_only_stay_near_their_start() -> None:

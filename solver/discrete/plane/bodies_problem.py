@@ -33,7 +33,6 @@ from solver.laws import (
     Perfect,
     Unilateral,
 )
-from solver.refusal import Words
 
 RestOf = Callable[[Inside, Scales], Array | None]
 
@@ -77,14 +76,7 @@ def problem_of(structure: Bodies, rest_of: RestOf = _nowhere) -> Problem:
     )
     loose = loose_bodies(problem)
     if len(loose):
-        names = ", ".join(structure.bodies[number].name for number in loose)
-        raise LooseBodiesError(
-            "Bodies.held",
-            Words(f"displacements that leave free: {names}"),
-            "holds and joints that leave no body free to move or to turn, where all "
-            "contacts are closed and stick",
-            "hold one more node or axis, or add a joint",
-        )
+        raise LooseBodiesError.of([structure.bodies[number].name for number in loose])
     return problem
 
 

@@ -10,6 +10,9 @@ from typing import Any, Literal
 from solver.settings.scene import Settings
 from solver.study.quantities.finished import FinishedRun
 
+NEVER = "never"
+"""Word on an infinite value: an event that never comes."""
+
 
 @dataclass(frozen=True)
 class Parameter:

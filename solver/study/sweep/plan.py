@@ -13,6 +13,7 @@ import numpy as np
 import param
 
 from solver.arrays import Array
+from solver.files.typed import typed_value
 from solver.latin import Ending
 from solver.settings.definitions import Parameter, properties_of, title_of
 from solver.settings.scene import Settings
@@ -20,7 +21,6 @@ from solver.settings.values import (
     SettingError,
     allowed,
     checked_value,
-    parse,
     unknown_setting,
 )
 from solver.study.quantities import reading
@@ -225,7 +225,8 @@ def axis_of(settings: Settings, text: str) -> Varied:
     SettingError
         For a text of another form, an unknown setting, or values that it cannot have.
     """
-    name, equals, values = text.partition("=")
+    before, equals, values = text.partition("=")
+    name = before.strip()
     definitions = settings.definitions()
     if not equals or not values:
         raise SettingError("--vary", text, FORM, "name a setting and its values")
@@ -236,7 +237,7 @@ def axis_of(settings: Settings, text: str) -> Varied:
     if ":" in values:
         found, logarithmic = _range(definition, name, values)
     else:
-        found = [parse(value.strip()) for value in values.split(",")]
+        found = [typed_value(value, name, definition) for value in values.split(",")]
     for end in (found[-1], found[0]):
         # A value that was typed is refused before those that lie between.
         checked_value(definition, name, end)
@@ -257,12 +258,17 @@ def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], b
     logarithmic = last == "log"
     if not logarithmic:
         numbers.append(last)
+    ends = [typed_value(end, name, definition) for end in numbers[:-1]]
     try:
-        low, high, count = map(float, numbers)
+        low, high = map(float, ends)
+        count = float(numbers[-1])
     except ValueError:
         remedy = "write three numbers, colons between them"
         raise _range_error(definition, name, text, remedy) from None
     remedy = _remedy(low, high, count, logarithmic)
+    is_counted = isinstance(definition, param.Integer)
+    if is_counted and not remedy and (low != int(low) or high != int(high)):
+        remedy = "the two ends are whole numbers"
     if remedy:
         raise _range_error(definition, name, text, remedy)
     if logarithmic:
@@ -271,7 +277,7 @@ def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], b
         spread = np.linspace(low, high, int(count))
     # Through text, so that 0.1:0.6:6 holds 0.3 and not 0.30000000000000004.
     values: list[object] = [float(f"{value:.12g}") for value in spread]
-    if isinstance(definition, param.Integer):
+    if is_counted:
         values = [round(float(f"{value:.12g}")) for value in spread]
     return values, logarithmic
 

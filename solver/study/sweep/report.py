@@ -27,7 +27,7 @@ from solver.study.page import (
     text_of,
     write_page,
 )
-from solver.study.quantities.quantity import Quantity
+from solver.study.quantities.quantity import NEVER, Quantity
 from solver.study.sweep.plan import Plan, Row, Varied
 
 MOST_CURVES = 6
@@ -36,7 +36,6 @@ DECADES = 30.0
 """Ratio of the largest to the smallest value from which a chart is logarithmic."""
 MARGIN = 0.06
 """Share of the values' range that is added to an axis on either side."""
-NEVER = "never"
 NONE = "none: a run with these settings has no such value"
 AFTER = "ending", "start", "iterations done", "seconds in all", "reason"
 OWN = "own"

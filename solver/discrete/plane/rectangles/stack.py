@@ -283,8 +283,12 @@ class Stack:
         if self.tilt is not None and self.spring is not None:
             return SlopeLoop(self.tilt)
         if self.support is not None:
-            bodies = len(self.rectangles)
-            return loop_on_ground(self.sides, self.size[0], bodies, self.strips)
+            weight: Array | float = 0.0
+            if self.tilt is not None:
+                weight = self.weight[0]
+            return loop_on_ground(
+                self.sides, self.size[0], len(self.rectangles), self.strips, weight
+            )
         return loop_of_end(self.sides["right"], self.longest, self.height)
 
     def description(self) -> Description:

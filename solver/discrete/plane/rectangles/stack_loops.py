@@ -114,11 +114,15 @@ class ShearLoop:
         force.
     length
         Length of the side, m.
+    weight
+        Weight of the bodies along a tilted ground, shape (n_instants,), N, which the
+        friction of the ground carries, too; or 0.
     """
 
     side: str
     given: SideComponent | None
     length: float
+    weight: Array | float = 0.0
 
     @property
     def axes(self) -> Axes:
@@ -129,7 +133,9 @@ class ShearLoop:
         """Loop of the side, whose displacement is the mean along x."""
         if self.given is None:
             names = [name for name in problem.contacts if "support" in name]
-            force: Callable[[LoopFields], Array] = partial(_rubbing_force, names)
+            force: Callable[[LoopFields], Array] = partial(
+                _rubbing_force, names, self.weight
+            )
         else:
             force = _force_on(problem, self.side, 0, self.given, self.length)
         return Loop(*self.axes, side_mean(problem, self.side, 0), force)
@@ -139,12 +145,17 @@ StackLoop = SettlementLoop | SlopeLoop | MomentLoop | DeflectionLoop | ShearLoop
 
 
 def loop_on_ground(
-    sides: Mapping[str, Side], length: float, bodies: int, strips: int
+    sides: Mapping[str, Side],
+    length: float,
+    bodies: int,
+    strips: int,
+    weight: Array | float,
 ) -> ShearLoop:
     """Loop of bodies on the ground; of a single body: of the side that moves it.
 
     `length` is that of all bodies together, m; `bodies` and `strips` are the numbers of
-    all bodies and of the strips of ground among them.
+    all bodies and of the strips of ground among them; `weight` is that along a tilted
+    ground, (n_instants,), N, or 0.
     """
     side = "top"
     if bodies == 1:
@@ -153,7 +164,7 @@ def loop_on_ground(
     holding = [each for each in sides.values() if each.x.prescribed]
     # Sides that share a corner share its force, too: the ground gives the sum.
     if bodies == 1 or len(holding) > 1 + bool(strips):
-        return ShearLoop(side, None, length)
+        return ShearLoop(side, None, length, weight)
     return ShearLoop(side, sides[side].x, length)
 
 
@@ -188,11 +199,17 @@ def _pressing_force(names: Sequence[str], fields: LoopFields) -> Array:
     return total
 
 
-def _rubbing_force(names: Sequence[str], fields: LoopFields) -> Array:
-    """Shear force by the friction of contacts by name, shape (n_instants,), N."""
+def _rubbing_force(
+    names: Sequence[str], weight: Array | float, fields: LoopFields
+) -> Array:
+    """Shear force by the friction of contacts by name, shape (n_instants,), N.
+
+    The `weight` along them, which they carry, too, is left out.
+    """
     forces = [-np.asarray(fields.contact(name).tangential_force) for name in names]
     force = np.concatenate(forces)
-    return without_residue(force.sum(axis=0), np.abs(force).sum(axis=0))
+    sizes = np.abs(force).sum(axis=0) + np.abs(weight)
+    return without_residue(force.sum(axis=0) - weight, sizes)
 
 
 def _spring_force(fields: LoopFields) -> Array:
