@@ -11,7 +11,7 @@ import sys
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from importlib.metadata import entry_points
+from importlib.metadata import entry_points, version
 from pathlib import Path
 from typing import Any
 
@@ -118,6 +118,9 @@ def _parser() -> argparse.ArgumentParser:
     if Path(sys.argv[0]).stem == "slipfront":
         prog = "slipfront"
     parser = argparse.ArgumentParser(prog=prog, description=DESCRIPTION)
+    parser.add_argument(
+        "--version", action="version", version=f"slipfront {version('slipfront')}"
+    )
     commands = parser.add_subparsers(required=True)
     _add_run(commands)
     add_command(commands, "scenes", "list the scenes", _scenes)

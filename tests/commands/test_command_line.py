@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -48,6 +49,14 @@ def test_run_prints_the_key_figures_and_exits_0_when_converged(capsys):
     assert float(figures["error_force"]) < 1e-9
     assert float(figures["seconds"]) > 0.0
     assert err == ""
+
+
+def test_the_version_is_that_of_the_package(capsys):
+    with pytest.raises(SystemExit) as end:
+        main(["--version"])
+    assert end.value.code == 0
+    package = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert capsys.readouterr().out == f"slipfront {package['version']}\n"
 
 
 def test_run_exits_1_when_it_stops_otherwise(capsys):
