@@ -16,7 +16,7 @@ from app.files.opener import files_panel
 from app.files.points import CurveDialog
 from app.state import PageState
 from app.units import unit_of
-from app.widgets import button, looks, mask_of
+from app.widgets import button, looks, mask_of, rebuilt
 from solver.files.typed import typed_amount
 from solver.scenes import CATALOGUE
 from solver.settings.definitions import (
@@ -389,7 +389,8 @@ class Controls:
         settings = self._state.settings
         with pn.io.hold():
             if settings.scene != self._built:
-                self._build()
+                with rebuilt():
+                    self._build()
             else:
                 for control in self._controls:
                     control.update()

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from html import escape
 from pathlib import Path
@@ -48,6 +49,21 @@ def _meanings() -> dict[str, str]:
 
 
 MEANINGS = _meanings()
+
+
+@contextmanager
+def rebuilt() -> Iterator[None]:
+    """Change much of what stands on a page in one message.
+
+    After each change Bokeh goes through all models of the page, but here once.
+    """
+    document = pn.state.curdoc
+    with pn.io.hold(document):
+        if document is None:
+            yield
+        else:
+            with document.models.freeze():
+                yield
 
 
 def html(template: str, **values: Any) -> str:

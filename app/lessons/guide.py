@@ -32,7 +32,7 @@ from app.lessons.handout import handout
 from app.state import PageState
 from app.transport import Transport
 from app.views.view import TEXT, View
-from app.widgets import dialog, download, looks, up_to
+from app.widgets import dialog, download, looks, rebuilt, up_to
 from solver.study.lessons import SUBJECTS, Lesson
 from solver.study.trade_case import Case
 
@@ -150,7 +150,7 @@ class Guide:
 
     # In one message: the browser lays out and paints all figures for each change of
     # their sizes.
-    @pn.io.hold()
+    @rebuilt()
     def _build(self, lesson: Lesson | None, case: Case | None) -> None:
         state = self._state
         parts = list[Any]()

@@ -478,15 +478,19 @@ def magnify(plot: figure, size: str, words: str) -> None:
     # Each by itself: an em is 13 pixels to axes, whatever the style.
     for model in (plot, *plot.legend):
         model.styles = {**model.styles, "font-size": size}
-    for glyph in plot.select(models.Text):
-        glyph.text_font_size = words
+    # Bokeh's own search would go through the figure for each kind.
+    parts = plot.references()
+    for part in parts:
+        if isinstance(part, models.Text):
+            part.text_font_size = words
     ticks = FEW_TICKS
     if size == TEXT:
         ticks = TICKS
     for axis in plot.yaxis:
         if isinstance(axis.ticker, models.ContinuousTicker):
             axis.ticker.desired_num_ticks = ticks
-    for model in (*plot.axis, *plot.select(Title), *plot.select(ColorBar)):
+    titled = [part for part in parts if isinstance(part, Title | ColorBar)]
+    for model in (*plot.axis, *titled):
         names = [name for name in model.properties() if name.endswith("text_font_size")]
         sizes = dict.fromkeys(names, size)
         tags = []

@@ -254,21 +254,34 @@ class MethodSettings(param.Parameterized):
     @classmethod
     def _of(cls, values: dict[str, Any]) -> Self:
         """Settings of plain values that have been checked separately."""
-        definitions = cls.definitions()
-        method = values.get("method", definitions["method"].default)
-        complete = cls.of_method(method) | values
+        usual = cls._usual()
+        complete = cls.of_method(values.get("method", usual["method"])) | values
         # To set a value takes param some time, even where it is the default.
         changed = {}
         for name, value in complete.items():
-            if value is not definitions[name].default:
+            if value is not usual[name]:
                 changed[name] = value
         settings = cls(**changed)
         settings.check_together()
         return settings
 
     @classmethod
+    @cache
+    def _usual(cls) -> Mapping[str, Any]:
+        """Default of every setting, whatever the method, by name."""
+        # Param takes long to say each of them.
+        definitions = cls.definitions().items()
+        return {name: definition.default for name, definition in definitions}
+
+    @classmethod
     def of_method(cls, method: str) -> dict[str, Any]:
         """Values of the settings that a method sets."""
+        return dict(cls._values_of(method))
+
+    @classmethod
+    @cache
+    def _values_of(cls, method: str) -> Mapping[str, Any]:
+        """Values of the settings that a method sets, by name."""
         values = dict(cls.METHODS[method])
         for name, value in values.items():
             definition = cls.definitions()[name]
@@ -281,10 +294,7 @@ class MethodSettings(param.Parameterized):
     @classmethod
     def defaults(cls, method: str) -> dict[str, Any]:
         """Value of every setting if only the method is given."""
-        values = {
-            name: definition.default for name, definition in cls.definitions().items()
-        }
-        return values | cls.of_method(method)
+        return {**cls._usual()} | cls.of_method(method)
 
     def check_together(self) -> None:
         """Refuse values that are inconsistent; derived classes extend this."""

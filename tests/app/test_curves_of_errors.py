@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,23 @@ from views import (
     view_of,
 )
 
-from app.frame import Selection
+from app.frame import Frame, Selection
 from app.views.errors import CURVES, HEIGHT, LEAST, WIDTH, Convergence
+
+RUNS = count(1000)
+"""Numbers of runs that no view has shown."""
+
+
+@pytest.fixture(scope="module")
+def plot() -> Convergence:
+    """A plot that shows one run after the other: a figure takes longer to make."""
+    return view_of(Convergence, frames_of("bar")[1])
+
+
+def show_anew(plot: Convergence, frame: Frame, size: str = "12px") -> None:
+    """Show a frame as that of a new run, in type of a size."""
+    plot.magnify(size)
+    shown(plot, replace(frame, run=replace(frame.run, number=next(RUNS))))
 
 
 def test_the_answer_is_a_ring_and_no_iteration_of_the_curve() -> None:
@@ -85,23 +101,23 @@ def test_curves_of_errors_are_named_at_their_ends_and_names_stay_apart() -> None
 
 @pytest.mark.parametrize("end", [0.1, 0.02, 0.0101, 0.0099, 0.003, 1e-4])
 @pytest.mark.parametrize("size", ["12px", "19px"])
-def test_names_of_curves_lie_on_no_line_of_the_goal(end: float, size: str) -> None:
+def test_names_of_curves_lie_on_no_line_of_the_goal(
+    plot: Convergence, end: float, size: str
+) -> None:
     last = frames_of("bar")[1]
-    count = len(last.history["iteration"])
+    length = len(last.history["iteration"])
     history = {
-        name: np.geomspace(1.0, end * (1.0 + 0.1 * number), count)
+        name: np.geomspace(1.0, end * (1.0 + 0.1 * number), length)
         for number, name in enumerate(CURVES)
     }
     history["iteration"] = last.history["iteration"]
-    view = view_of(Convergence, replace(last, history=history))
-    view.magnify(size)
-    view.update(*(replace(last, history=history), Selection(), None))
-    names = view.sources["names"].data
+    show_anew(plot, replace(last, history=history), size)
+    names = plot.sources["names"].data
     assert len(names["y"]) == len(CURVES)
-    heights = on_plot(view, names["x"], names["y"])[:, 1]
-    ((_, goal),) = on_plot(view, [0.0], view.sources["goal"].data["y"])
-    assert np.abs(heights - goal).min() > 0.55 * view.type_size
-    assert np.diff(np.sort(heights)).min() > view.type_size
+    heights = on_plot(plot, names["x"], names["y"])[:, 1]
+    ((_, goal),) = on_plot(plot, [0.0], plot.sources["goal"].data["y"])
+    assert np.abs(heights - goal).min() > 0.55 * plot.type_size
+    assert np.diff(np.sort(heights)).min() > plot.type_size
     assert heights.min() > 0.0
     assert heights.max() < HEIGHT
 
@@ -114,34 +130,34 @@ def on_plot(view: Convergence, x: Any, y: Any) -> np.ndarray:
     return np.stack([shares, heights], axis=1) * [WIDTH, HEIGHT]
 
 
-@pytest.mark.parametrize("count", [4, 30, 75, 100])
+@pytest.mark.parametrize("length", [4, 30, 75, 100])
 @pytest.mark.parametrize("decades", [1.0, 3.0, 6.0])
 def test_the_name_of_the_goal_is_at_its_line_and_on_no_curve(
-    count: int, decades: float
+    plot: Convergence, length: int, decades: float
 ) -> None:
     last = frames_of("bar")[1]
     # Curves fall through the line of the goal, some at the beginning, some at the end.
-    shares = np.arange(1.0, count + 1.0) / count
+    shares = np.arange(1.0, length + 1.0) / length
     history = dict.fromkeys(last.history, 10.0 ** (-2.0 * shares))
-    history |= {"iteration": count * shares, "indicator": 10.0 ** (-decades * shares)}
+    history |= {"iteration": length * shares, "indicator": 10.0 ** (-decades * shares)}
     history["behaviour"] = 10.0 ** (1.0 - decades * shares**2)
-    view = view_of(Convergence, replace(last, iteration=count, history=history))
-    goal = view.sources["goal name"].data
+    show_anew(plot, replace(last, iteration=length, history=history))
+    goal = plot.sources["goal name"].data
     assert goal["text"] == ["goal 1 %"]
-    (at,) = on_plot(view, goal["x"], goal["y"])
-    half = np.array([0.0, 0.4 * view.type_size])
-    width = np.array([0.5 * view.type_size * len("goal 1 %"), 0.0])
+    (at,) = on_plot(plot, goal["x"], goal["y"])
+    half = np.array([0.0, 0.4 * plot.type_size])
+    width = np.array([0.5 * plot.type_size * len("goal 1 %"), 0.0])
     if goal["text_align"] == ["right"]:
         at -= width
     box = np.array([at - half, at + half + width])
     assert 0.0 <= box[0, 0] < box[1, 0] <= WIDTH
-    (line,) = on_plot(view, [0.0], view.sources["goal"].data["y"])
-    assert abs(line[1] - at[1]) < view.type_size
+    (line,) = on_plot(plot, [0.0], plot.sources["goal"].data["y"])
+    assert abs(line[1] - at[1]) < plot.type_size
     for name in CURVES:
-        data = view.sources[name].data
+        data = plot.sources[name].data
         x = np.linspace(data["x"][0], data["x"][-1], 2000)
         y = 10.0 ** np.interp(x, data["x"], np.log10(data["y"]))
-        points = on_plot(view, x, y)
+        points = on_plot(plot, x, y)
         assert not meet(box, points, points), name
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 from bokeh.models import ColorBar, LinearColorMapper
-from pictures import KINDS, frame_of, shown, small
+from pictures import frame_of, shown, small
 
 from app.state import PageState, default_settings
 from app.views.parts import bare, color_bar, explain
@@ -10,15 +10,6 @@ from app.views.rope import WireSection
 from app.views.scene import Stress
 from app.views.timeline import Timeline
 from app.views.view import View
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_legend_above_begins_inside_the_figure(kind: type[View]) -> None:
-    # It begins beside the axis, if the figure has one.
-    plot = kind(PageState(default_settings("bar"))).figure
-    for legend in plot.legend:
-        if legend in plot.above and not all(axis.visible for axis in plot.yaxis):
-            assert legend.styles["margin-left"] == "0"
 
 
 def test_an_entry_that_changes_has_the_legend_of_the_time_line_painted() -> None:

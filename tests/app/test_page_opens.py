@@ -12,6 +12,7 @@ import panel as pn
 import panel_material_ui as pmui
 import pytest
 from bokeh.document import Document
+from bokeh.document.models import DocumentModelManager
 from bokeh.models import ImportedStyleSheet
 from bokeh.plotting import figure
 from panel.io.state import set_curdoc
@@ -110,6 +111,25 @@ def opened(document: Document) -> Page:
     page.template.server_doc(doc=document)
     page._fill()
     return page
+
+
+@pytest.mark.usefixtures("orders")
+def test_bokeh_goes_through_a_page_once_for_all_controls_of_a_scene(
+    document: Document, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page = opened(document)
+    searched: list[object] = []
+    search = DocumentModelManager.recompute
+
+    def counted(models: DocumentModelManager) -> None:
+        searched.append(models)
+        search(models)
+
+    monkeypatch.setattr(DocumentModelManager, "recompute", counted)
+    page.state.settings = default_settings("block")
+    assert searched == [document.models]
+    for root in document.roots:
+        assert {model.document for model in root.references()} == {document}
 
 
 def test_figures_come_to_a_page_after_what_comes_meanwhile(document: Document) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
+from functools import cache
 from itertools import chain, product
 from typing import Any
 
@@ -43,6 +44,14 @@ from app.views.status_map import StatusMap
 from app.views.timeline import Timeline
 from app.views.view import View
 from solver.study.comparison import DISPLACEMENT, FRICTION, OtherResults
+
+
+@cache
+def untouched(kind: type[View]) -> View:
+    """A view that has shown no frame; no test changes it."""
+    view = kind(PageState(default_settings("bar")))
+    assert view.figure is not None
+    return view
 
 
 def made_of(kind: type[View]) -> str:
@@ -123,7 +132,7 @@ def draws_something(view: View) -> bool:
 
 def test_ranges_that_follow_data_have_some_before_a_view_is_updated() -> None:
     # BokehJS would complain in the console.
-    views = [kind(PageState(default_settings("rope"))) for kind in VIEWS]
+    views = [untouched(kind) for kind in VIEWS]
     follow = [v for v in views if isinstance(v.figure.x_range, DataRange1d)]
     assert follow
     for view in follow:
@@ -403,9 +412,18 @@ def test_a_chart_of_few_cycles_says_how_many_tell_how_slip_goes_on() -> None:
 def test_the_edge_of_a_canvas_which_bokeh_does_not_clear_is_left_free(
     kind: type[View],
 ) -> None:
-    figure = kind(PageState(default_settings("bar"))).figure
+    figure = untouched(kind).figure
     for side in ("left", "top"):
         border = getattr(figure, f"min_border_{side}")
         if border is None:
             border = figure.min_border
         assert border >= 1
+
+
+@pytest.mark.parametrize("kind", VIEWS)
+def test_a_legend_above_begins_inside_the_figure(kind: type[View]) -> None:
+    # It begins beside the axis, if the figure has one.
+    plot = untouched(kind).figure
+    for legend in plot.legend:
+        if legend in plot.above and not all(axis.visible for axis in plot.yaxis):
+            assert legend.styles["margin-left"] == "0"

@@ -31,7 +31,7 @@ DARK = "rgb(18, 18, 18)"
 DARK_TAB = "rgb(144, 202, 249)"
 BACKGROUND = "getComputedStyle(document.body).backgroundColor"
 SIZE = """() => {
-  const models = Bokeh.documents[0].roots().flatMap((root) => [...root.references()])
+  const models = [...Bokeh.documents[0].all_models]
   const axis = models.find((model) => model.axis_label == "force, kN/m")
   return axis.major_label_text_font_size
 }"""

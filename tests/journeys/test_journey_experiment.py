@@ -19,7 +19,7 @@ from playwright.sync_api import Page, expect
 from app.state import default_settings
 from solver.study.quantities.finished import finished_run
 
-SIZES = {"elements": 20, "instants": 21, "substructures": 4}
+SIZES = {"elements": 20, "instants": 21, "substructures": 1}
 QUERY = "&".join([f"{name}={number}" for name, number in SIZES.items()])
 BUSY = "() => { window.idle = requestIdleCallback; requestIdleCallback = () => {} }"
 IDLE = "() => { requestIdleCallback = window.idle }"

@@ -32,7 +32,7 @@ from playwright.sync_api import Page, expect
 PRESS = "(pressed, at) => setTimeout(() => pressed.click(), at - Date.now())"
 """Script that presses an element at a time, ms since the epoch."""
 MEASURED = """() => {
-  const models = Bokeh.documents[0].roots().flatMap((root) => [...root.references()])
+  const models = [...Bokeh.documents[0].all_models]
   const points = models.find((model) => model.data?.text?.includes("never"))
   return points?.data.x.length
 }"""
