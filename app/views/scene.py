@@ -30,7 +30,7 @@ from app.views.colors import (
 from app.views.hints import NONE, hints_of
 from app.views.labels import labels_of
 from app.views.layout import Layout, layout_of
-from app.views.parts import LEAST, bare, color_bar, explain
+from app.views.parts import bare, color_bar, explain
 from app.views.picture import Picture
 from app.views.view import View
 from solver.arrays import Array
@@ -85,9 +85,7 @@ class Scene(View):
         plot.on_event(Pan, self._drag)
         plot.on_event(PanEnd, self._let_go)
         plot.on_event(Tap, self._select)
-        self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
-        for size in self._size:
-            plot.on_change(size, self._resize)
+        self.follow_size(WIDTH, HEIGHT)
 
     def _draw(self, plot: figure) -> None:
         """Add all layers from the bottom to the top, and the legend."""
@@ -209,10 +207,6 @@ class Scene(View):
         self.fill("ghost", **past)
         self._show_keys(frame, layout, selection.stage)
 
-    def lay_out(self, width: float, height: float) -> None:
-        """Lay out the picture for a size of the figure, px."""
-        self._size = {"inner_width": width, "inner_height": height}
-
     def _layout_of(self, frame: Frame) -> Layout:
         type_size = float(self.words.removesuffix("px"))
         width, height = self._size.values()
@@ -311,7 +305,7 @@ class Scene(View):
             self._peaks[act.where] = peak
 
     def _resize(self, name: str, old: float, new: float) -> None:
-        self._size[name] = max(float(new), LEAST)
+        super()._resize(name, old, new)
         if self._shown is not None:
             with pn.io.hold():
                 self.update(*self._shown)
