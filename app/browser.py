@@ -25,6 +25,8 @@ from app.views.view import View
 log = logging.getLogger(__name__)
 LOST = 5.0
 """Seconds after which a picture counts as lost, as when the network broke."""
+TOLD = 5000
+"""Time for which a message on the network is in sight, ms."""
 PAINTED = (
     "requestAnimationFrame(() => setTimeout(() => { pulse.painted = pulse.sent }))"
 )
@@ -131,6 +133,23 @@ document.addEventListener("touchstart", hold, {{passive: false}})
 """
 """Script that has a finger on a handle of the picture drag it. Elsewhere on the picture
 a finger scrolls the page, and then the browser breaks off what it drags."""
+
+NETWORK = f"""
+const say = (type, text) => {{
+  browser.document.config.notifications?.push.emit({{type, text, timeout: {TOLD}}})
+  document.getElementById("spoken").textContent = text
+}}
+const tell = () => {{
+  if (navigator.onLine) {{ return }}
+  say("error", "No network: the run is shown as it was. It goes on by itself.")
+  setTimeout(tell, {TOLD})
+}}
+addEventListener("offline", tell)
+addEventListener("online", () => say("success", "The network is back."))
+"""
+"""Script that says that the device has no network, by Bokeh's own notifications: its
+socket may close minutes later, and only then Bokeh says so itself. They go by
+themselves, and are said again as long as they hold."""
 
 CHOOSE = """
 const openedBy = (keys) => (event) => {
@@ -381,7 +400,8 @@ class Browser(DataModel):
             ["given", "is_stale", "is_new"],
         )
         document.add_root(self)
-        for script in (KEEP_SHEETS, ACTS, LISTEN, TELL, HOLD, CHOOSE, RETURN):
+        scripts = (KEEP_SHEETS, ACTS, LISTEN, TELL, HOLD, NETWORK, CHOOSE, RETURN)
+        for script in scripts:
             document.js_on_event(DocumentReady, CustomJS(args=args, code=script))
 
 

@@ -37,5 +37,5 @@ def test_the_name_of_a_flag_on_a_line_lies_beside_the_line(slope: float) -> None
 
 def test_the_name_of_a_flag_stands_inside_its_plot() -> None:
     anchors = [(395.0, "left"), (395.0, "right")]
-    low, high = box(place_off([], anchors, 80.0, TEXT, ROOM))
+    _, high = box(place_off([], anchors, 80.0, TEXT, ROOM))
     assert high[0] <= ROOM[0]
