@@ -25,6 +25,11 @@ COMMANDS = {
 }
 """Arguments of the commands, by the titles that `WORDS` has of them."""
 LOOKS: dict[str, Any] = {"size": "small", "margin": (10, 6)}
+SCHEMES = {
+    False: "color-scheme: light; --dark: 0",
+    True: "color-scheme: dark; --dark: 1",
+}
+"""Styles of a report (`page.html`) in a page that is light, or dark."""
 Command = tuple[tuple[str, ...], dict[str, str]]
 """Arguments of a command, and contents of the files that they name."""
 Files = dict[str, bytes]
@@ -192,5 +197,5 @@ def framed(files: Files, *, is_dark: bool) -> str:
         path = pn.state.location.pathname
     # The browser says what the path is: it must not become markup.
     page = files[name].decode().replace(PAGE, escape(path))
-    scheme = "dark" if is_dark else "light"
-    return html("experiments/reports.html", title=name, page=page, scheme=scheme)
+    page = page.replace("<html", f'<html style="{SCHEMES[is_dark]}"', 1)
+    return html("experiments/reports.html", title=name, page=page)

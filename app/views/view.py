@@ -237,18 +237,21 @@ class View:
             # What it lies on, where no place is free, is to be read through.
             background_fill_alpha=0.75,
         )
+        self._flagged: Frame | None = None
         self.follow_size(WIDTH, HEIGHT)
         for name in self._size:
             self._figure.on_change(name, lambda attr, old, new: self._move_flag())
 
     def _move_flag(self) -> None:
         """Place the name of the flag again, in a figure of another size."""
-        if self.state.frame is not None:
+        # Before it was shown the axes have no limits.
+        if self._flagged is not None:
             with pn.io.hold():
-                self.show_flag(self.state.frame)
+                self.show_flag(self._flagged)
 
     def show_flag(self, frame: Frame) -> None:
         """Mark the known number of the case if it stands in this plot."""
+        self._flagged = frame
         case = self.state.trade_case
         flag = None
         if case is not None and case.knows(frame.run.settings):
