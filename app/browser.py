@@ -25,8 +25,6 @@ from app.views.view import View
 log = logging.getLogger(__name__)
 LOST = 5.0
 """Seconds after which a picture counts as lost, as when the network broke."""
-TOLD = 5000
-"""Time for which a message on the network is in sight, ms."""
 PAINTED = (
     "requestAnimationFrame(() => setTimeout(() => { pulse.painted = pulse.sent }))"
 )
@@ -134,22 +132,29 @@ document.addEventListener("touchstart", hold, {{passive: false}})
 """Script that has a finger on a handle of the picture drag it. Elsewhere on the picture
 a finger scrolls the page, and then the browser breaks off what it drags."""
 
-NETWORK = f"""
-const say = (type, text) => {{
-  browser.document.config.notifications?.push.emit({{type, text, timeout: {TOLD}}})
-  document.getElementById("spoken").textContent = text
-}}
-const tell = () => {{
-  if (navigator.onLine) {{ return }}
-  say("error", "No network: the run is shown as it was. It goes on by itself.")
-  setTimeout(tell, {TOLD})
-}}
+NETWORK = """
+const sign = document.createElement("div")
+sign.id = "network"
+sign.setAttribute("role", "status")
+document.body.append(sign)
+let isLost = false
+const tell = () => {
+  if (!navigator.onLine) {
+    sign.textContent = "No network: what is shown stays as it is until there is one."
+  } else if (isLost) {
+    sign.textContent = "The server does not answer: the page tries again."
+  } else {
+    sign.textContent = ""
+  }
+}
 addEventListener("offline", tell)
-addEventListener("online", () => say("success", "The network is back."))
+addEventListener("online", tell)
+browser.document.on_event("connection_lost", () => { isLost = true; tell() })
+browser.document.on_event("client_reconnected", () => { isLost = false; tell() })
 """
-"""Script that says that the device has no network, by Bokeh's own notifications: its
-socket may close minutes later, and only then Bokeh says so itself. They go by
-themselves, and are said again as long as they hold."""
+"""Script that says that the device has no network, whose socket may close minutes
+later, or that the socket has closed. Bokeh's own notifications, which Panel switches
+off, cannot take back what they said of a network."""
 
 CHOOSE = """
 const openedBy = (keys) => (event) => {

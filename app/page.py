@@ -6,7 +6,6 @@ from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
-from bokeh.models.ui.notifications import Notifications
 from panel.io.resources import LOCAL_DIST
 from panel.util import edit_readonly
 
@@ -65,9 +64,15 @@ LOADING = """
 }
 """
 """Style of what is seen until the page is there."""
-NOTIFIED = "body > div:not([class], [id]) { z-index: 2000; max-width: 90% !important; }"
-"""Style of Bokeh's notifications, which stand in an element without a name, above the
-header."""
+NETWORK = """
+#network {
+  position: fixed; inset: 8px 0 auto; z-index: 2000; margin: auto;
+  width: fit-content; max-width: 90%; padding: 8px 14px; border-radius: 6px;
+  background: #B3261E; color: #FFF; font: 15px Roboto, sans-serif;
+}
+#network:empty { display: none; }
+"""
+"""Style of what is said of a network that is lost, over the header."""
 READ = 15.0
 """Type size of the text beside the plots, px."""
 HEADINGS = {
@@ -98,7 +103,7 @@ class Page:
 
     def __init__(self, state: PageState, iteration: int = 0) -> None:
         self.state = state
-        self._document = document = pn.state.curdoc
+        document = pn.state.curdoc
         self._browser = Browser(name="browser")
         self._link = Link(state, self._browser)
         self._supervisor = Supervisor(state, document)
@@ -156,7 +161,7 @@ class Page:
             sidebar_width=320,
             sidebar_open=self._has_controls,
             sidebar_variant="persistent",
-            raw_css=[LOADING, NOTIFIED],
+            raw_css=[LOADING, NETWORK],
             busy_indicator=None,
             # As `theme` in the address has it, and a person chooses.
             dark_theme=self.state.is_dark,
@@ -170,10 +175,6 @@ class Page:
         Each stands in a component of its own: Bokeh lays out all that a component holds
         whenever one widget in it is mounted, or changes its size.
         """
-        # Bokeh's own, which Panel takes off a page once its script has run.
-        self._document.config.update(
-            notifications=Notifications(), notify_connection_status=True
-        )
         self.template.param.update(
             sidebar=[self._controls.view],
             header=[self._header()],

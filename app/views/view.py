@@ -534,6 +534,10 @@ def magnify(plot: figure, size: str, words: str) -> None:
     # Each by itself: an em is 13 pixels to axes, whatever the style.
     for model in (plot, *plot.legend):
         model.styles = {**model.styles, "font-size": size}
+    # Marks of legends are as large as their words: on a projector colours are seen.
+    pixels = round(float(size.removesuffix("px")))
+    for box in plot.legend:
+        box.update(glyph_width=pixels, glyph_height=pixels, label_height=pixels)
     for glyph in plot.select(models.Text):
         glyph.text_font_size = words
     ticks = FEW_TICKS
