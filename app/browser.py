@@ -149,8 +149,15 @@ const tell = () => {
 }
 addEventListener("offline", tell)
 addEventListener("online", tell)
-browser.document.on_event("connection_lost", () => { isLost = true; tell() })
-browser.document.on_event("client_reconnected", () => { isLost = false; tell() })
+// Of a socket that is open again Bokeh tells only where it could pull the page anew.
+const look = (connection) => {
+  isLost = connection.deref()?.socket?.readyState != WebSocket.OPEN
+  tell()
+  if (isLost) { setTimeout(look, 500, connection) }
+}
+browser.document.on_event("connection_lost", (_, {connection}) => {
+  if (!isLost) { look(connection) }
+})
 """
 """Script that says that the device has no network, whose socket may close minutes
 later, or that the socket has closed. Bokeh's own notifications, which Panel switches
