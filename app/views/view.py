@@ -263,9 +263,13 @@ class View:
         x = float(self.x(flag.x))
         y = float(self.y(flag.y))
         # Any x: a line.
-        is_level = math.isnan(x)
-        self.fill("level", y=[y] * is_level)
-        self.fill("flag", x=[x] * (not is_level), y=[y] * (not is_level))
+        levels = []
+        marks = [(x, y)]
+        if math.isnan(x):
+            levels = [y]
+            marks = []
+        self.fill("level", y=levels)
+        self.fill("flag", x=[at[0] for at in marks], y=[at[1] for at in marks])
         place = self._place_of_flag(flag.text, x, y)
         start, end = _limits(self._figure.x_range)
         across = start + place.x / self._size["inner_width"] * (end - start)
