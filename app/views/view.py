@@ -540,8 +540,11 @@ def magnify(plot: figure, size: str, words: str) -> None:
         model.styles = {**model.styles, "font-size": size}
     # Marks of legends are as large as their words: on a projector colours are seen.
     pixels = round(float(size.removesuffix("px")))
+    marks = dict.fromkeys(("glyph_width", "glyph_height", "label_height"), pixels)
     for box in plot.legend:
-        box.update(glyph_width=pixels, glyph_height=pixels, label_height=pixels)
+        box.update(tags=[marks], **marks)
+        if not box.js_property_callbacks:
+            box.js_on_change("glyph_width", keep)
     for glyph in plot.select(models.Text):
         glyph.text_font_size = words
     ticks = FEW_TICKS

@@ -39,6 +39,9 @@ def test_marks_of_a_legend_are_as_large_as_its_words() -> None:
     (legend,) = view.figure.legend
     view.magnify("28px")
     assert legend.glyph_height == legend.glyph_width == 28
+    # The browser sets sizes of the theme in their place, which a script takes back.
+    assert legend.tags == [{name: 28 for name in legend.tags[0]}]
+    assert "change:glyph_width" in legend.js_property_callbacks
     view.magnify("12px")
     assert legend.glyph_height == 12
 
