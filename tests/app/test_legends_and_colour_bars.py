@@ -40,7 +40,7 @@ def test_marks_of_a_legend_are_as_large_as_its_words() -> None:
     view.magnify("28px")
     assert legend.glyph_height == legend.glyph_width == 28
     # The browser sets sizes of the theme in their place, which a script takes back.
-    assert legend.tags == [{name: 28 for name in legend.tags[0]}]
+    assert legend.tags == [dict.fromkeys(legend.tags[0], 28)]
     assert "change:glyph_width" in legend.js_property_callbacks
     view.magnify("12px")
     assert legend.glyph_height == 12
