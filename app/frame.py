@@ -99,7 +99,7 @@ class DeformedGeometry:
     status: Bytes
     """Status of the contact points, shape (n_points, n_instants)."""
 
-    @property
+    @cached_property
     def largest(self) -> Floats:
         """Largest displacement of the nodes along x and y, shape (2,), m."""
         return np.nanmax(np.abs(self.nodes), axis=(0, 2), initial=0.0)
