@@ -132,6 +132,37 @@ document.addEventListener("touchstart", hold, {{passive: false}})
 """Script that has a finger on a handle of the picture drag it. Elsewhere on the picture
 a finger scrolls the page, and then the browser breaks off what it drags."""
 
+NETWORK = """
+const sign = document.createElement("div")
+sign.id = "network"
+sign.setAttribute("role", "status")
+document.body.append(sign)
+let isLost = false
+const tell = () => {
+  if (!navigator.onLine) {
+    sign.textContent = "No network: what is shown stays as it is until there is one."
+  } else if (isLost) {
+    sign.textContent = "The server does not answer: the page tries again."
+  } else {
+    sign.textContent = ""
+  }
+}
+addEventListener("offline", tell)
+addEventListener("online", tell)
+// Of a socket that is open again Bokeh tells only where it could pull the page anew.
+const look = (connection) => {
+  isLost = connection.deref()?.socket?.readyState != WebSocket.OPEN
+  tell()
+  if (isLost) { setTimeout(look, 500, connection) }
+}
+browser.document.on_event("connection_lost", (_, {connection}) => {
+  if (!isLost) { look(connection) }
+})
+"""
+"""Script that says that the device has no network, whose socket may close minutes
+later, or that the socket has closed. Bokeh's own notifications, which Panel switches
+off, cannot take back what they said of a network."""
+
 CHOOSE = """
 const openedBy = (keys) => (event) => {
   const target = event.composedPath()[0]
@@ -381,7 +412,8 @@ class Browser(DataModel):
             ["given", "is_stale", "is_new"],
         )
         document.add_root(self)
-        for script in (KEEP_SHEETS, ACTS, LISTEN, TELL, HOLD, CHOOSE, RETURN):
+        scripts = (KEEP_SHEETS, ACTS, LISTEN, TELL, HOLD, NETWORK, CHOOSE, RETURN)
+        for script in scripts:
             document.js_on_event(DocumentReady, CustomJS(args=args, code=script))
 
 

@@ -99,6 +99,11 @@ class DeformedGeometry:
     status: Bytes
     """Status of the contact points, shape (n_points, n_instants)."""
 
+    @cached_property
+    def largest(self) -> Floats:
+        """Largest displacement of the nodes along x and y, shape (2,), m."""
+        return np.nanmax(np.abs(self.nodes), axis=(0, 2), initial=0.0)
+
 
 @dataclass(frozen=True, eq=False)
 class Run:
@@ -123,6 +128,9 @@ class Run:
     """Contact of the incremental solver, by interface; empty without a reference."""
     reference_loop: Floats | None = None
     """Displacement and force of the reference's loop, shape (2, n_instants), SI."""
+    reference_moved: Floats | None = None
+    """Largest displacement of the drawn nodes in the reference, along x and y, shape
+    (2,), m."""
     reference_seconds: float = float("nan")
     """Run time of the incremental solver, s."""
     mechanism: Floats | None = None

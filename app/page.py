@@ -64,6 +64,15 @@ LOADING = """
 }
 """
 """Style of what is seen until the page is there."""
+NETWORK = """
+#network {
+  position: fixed; inset: 8px 0 auto; z-index: 2000; margin: auto;
+  width: fit-content; max-width: 90%; padding: 8px 14px; border-radius: 6px;
+  background: #B3261E; color: #FFF; font: 15px Roboto, sans-serif;
+}
+#network:empty { display: none; }
+"""
+"""Style of what is said of a network that is lost, over the header."""
 READ = 15.0
 """Type size of the text beside the plots, px."""
 HEADINGS = {
@@ -152,7 +161,7 @@ class Page:
             sidebar_width=320,
             sidebar_open=self._has_controls,
             sidebar_variant="persistent",
-            raw_css=[LOADING],
+            raw_css=[LOADING, NETWORK],
             busy_indicator=None,
             # As `theme` in the address has it, and a person chooses.
             dark_theme=self.state.is_dark,

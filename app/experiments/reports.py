@@ -25,6 +25,11 @@ COMMANDS = {
 }
 """Arguments of the commands, by the titles that `WORDS` has of them."""
 LOOKS: dict[str, Any] = {"size": "small", "margin": (10, 6)}
+SCHEMES = {
+    False: "color-scheme: light; --dark: 0",
+    True: "color-scheme: dark; --dark: 1",
+}
+"""Styles of a report (`page.html`) in a page that is light, or dark."""
 Command = tuple[tuple[str, ...], dict[str, str]]
 """Arguments of a command, and contents of the files that they name."""
 Files = dict[str, bytes]
@@ -62,7 +67,8 @@ class CommandTab(ABC):
             sizing_mode="stretch_width",
             css_classes=[tab.lower()],
         )
-        state.param.watch(lambda *events: self.show(), ["settings", "tab", "brought"])
+        shown = ["settings", "tab", "brought", "is_dark"]
+        state.param.watch(lambda *events: self.show(), shown)
         follow(self.look, self.end)
 
     @property
@@ -140,7 +146,7 @@ class CommandTab(ABC):
         is_disabled = is_busy or self.command is None
         self.start_button.param.update(disabled=is_disabled, label=label)
         self.cancel_button.visible = is_busy
-        self.page.object = shown(files)
+        self.page.object = framed(files, is_dark=self.state.is_dark)
         self.files[:] = [
             download(name, name, lambda data=data: data, **LOOKS)
             for name, data in files.items()
@@ -180,8 +186,8 @@ class Reports(CommandTab):
         return WORDS[self.report]
 
 
-def shown(files: Files) -> str:
-    """HTML of a report's page in a frame, with links to this server."""
+def framed(files: Files, *, is_dark: bool) -> str:
+    """HTML of a report's page in a frame, light or dark, with links to this server."""
     pages = [name for name in files if name.endswith(".html")]
     if not pages:
         return ""
@@ -191,4 +197,5 @@ def shown(files: Files) -> str:
         path = pn.state.location.pathname
     # The browser says what the path is: it must not become markup.
     page = files[name].decode().replace(PAGE, escape(path))
+    page = page.replace("<html", f'<html style="{SCHEMES[is_dark]}"', 1)
     return html("experiments/reports.html", title=name, page=page)

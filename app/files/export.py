@@ -17,7 +17,7 @@ import panel_material_ui as pmui
 from bokeh.document import Document
 from bokeh.embed import file_html
 from bokeh.model import Model
-from bokeh.models import CustomJS, Div, PointDrawTool, SaveTool, Slider
+from bokeh.models import CustomJS, Div, PointDrawTool, SaveTool, Slider, Text
 from bokeh.resources import INLINE
 
 from app.charts import library
@@ -26,10 +26,11 @@ from app.state import PageState
 from app.status import figures_line, status_line
 from app.units import unit_of
 from app.views.layout import shape_of
+from app.views.pieces import PiecesView
 from app.views.scene import Scene
 from app.views.status_map import StatusMap
 from app.views.timeline import Timeline, given_in
-from app.views.view import View
+from app.views.view import TEXT, View
 from app.widgets import TEMPLATES, download, up_to
 from app.worker.cells import thinned
 from app.worker.references import has_reference
@@ -63,19 +64,20 @@ WIDE = {"Scene": "scene", "Load path": "timeline"}
 LOW = 90
 HEIGHT = 300
 """Height of the time line and of plots there, px."""
-WIDTH = 450.0
 NARROWEST = 340
 WIDEST = 800
-"""Width for which a picture is laid out, and those between which it is scaled, px: on
-a phone it is as wide as the page."""
+"""Widths between which a picture is scaled, px: on a phone it is as wide as the page.
+It is laid out for the least, as its words are not scaled."""
 HEIGHTS = {
-    (False, False): 160.0,
-    (False, True): 290.0,
-    (True, False): 225.0,
-    (True, True): 315.0,
+    (False, False): 155.0,
+    (False, True): 250.0,
+    (True, False): 175.0,
+    (True, True): 250.0,
 }
 """Heights of pictures, px, by whether they are without loads, and whether the structure
 is high."""
+ROOM = 270.0, 220.0
+"""Size of a plot without its axes on a phone, px, and less, as its font may be wide."""
 APART = "span { margin-right: 14px; display: inline-block; }"
 """Style sheet of key figures."""
 SHOW = """
@@ -274,13 +276,19 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
         if isinstance(view, Scene):
             # Nobody tells the size of the figure there: the picture is scaled as one.
             height = HEIGHTS[view.is_bare, shape_of(run.geometry) == "high"]
-            view.lay_out(WIDTH, height)
+            view.lay_out(NARROWEST, height)
             plot.update(
                 sizing_mode="scale_width",
-                aspect_ratio=WIDTH / height,
+                aspect_ratio=NARROWEST / height,
                 min_width=NARROWEST,
                 max_width=WIDEST,
             )
+            # Smaller than they are laid out: another machine may have no font but a
+            # wide one.
+            for glyph in plot.select(Text):
+                glyph.text_font_size = TEXT
+        elif not isinstance(view, PiecesView):
+            view.lay_out(*ROOM)
         plot.tools = [
             tool for tool in plot.tools if not isinstance(tool, PointDrawTool)
         ]

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import panel as pn
 from bokeh.core.properties import value
 from bokeh.events import Tap
 from bokeh.models import FixedTicker, PrintfTickFormatter
@@ -14,20 +15,13 @@ from app.frame import LOCAL, Floats, Frame, Selection
 from app.units import percent
 from app.views.axis import extent, rounded_up, whole
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
-from app.views.parts import LEAST as LEAST_SIZE
 from app.views.parts import hover
-from app.views.view import View
+from app.views.view import HEIGHT, LETTER, ROW, WIDTH, View
 from app.worker.references import has_reference
 
 SEEN = (1e-3, 10.0)
 """Errors that are in sight in any case. Indicators widen the axis downwards alone:
 they are numbers of other sizes."""
-HEIGHT = 160.0
-WIDTH = 380.0
-"""Size of a plot until the browser reports its own, px."""
-LETTER = 0.56
-ROW = 1.3
-"""Width of a letter and height of a line of words over their type size, about."""
 NAME = 6.0
 """Distance of the name of a curve from its end, px."""
 STEPS = 9
@@ -37,8 +31,8 @@ LEAST = 1e-14
 FOOT = 8.0
 """Height at which the answer stands above the lower edge, px: a ring has room there."""
 NAMED = 1.25
-"""Length of the axis of iterations over that of the curves, at whose ends their names
-stand."""
+"""Least length of the axis of iterations over that of the curves, at whose ends their
+names stand."""
 APART = 1.05
 OFF = 0.6
 """Least distance of two of these names over their type size, and of a name from the
@@ -130,12 +124,12 @@ class Convergence(ErrorPlot):
         self.legend(**titles, stage="local stage", ghost="ghost")
         hover(plot, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
         plot.on_event(Tap, self._go_back)
-        self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
-        for size in self._size:
-            plot.on_change(size, self._resize)
+        self._shown: tuple[Frame, Selection, Frame | None] | None = None
+        self.follow_size(WIDTH, HEIGHT)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show errors and indicators of all iterations so far."""
+        self._shown = frame, selection, ghost
         newest = self._newest(frame)
         history = _searched(newest)
         for column in CURVES:
@@ -175,8 +169,8 @@ class Convergence(ErrorPlot):
         shortest = SHORTEST
         if has_ended:
             shortest = SHORTEST_AT_END
-        end = rounded_up(NAMED * max(*ends, shortest))
-        self.x.hold((number, has_ended), [0.0, end])
+        end = rounded_up(self._named * max(*ends, shortest))
+        self.x.hold((number, has_ended, self._named), [0.0, end])
 
     def _show_names(self, newest: Frame) -> None:
         """Place the names of curves at their ends, without overlap."""
@@ -262,6 +256,14 @@ class Convergence(ErrorPlot):
         return np.asarray(letters / [*self._size.values()])
 
     @property
+    def _named(self) -> float:
+        """Length of the axis of iterations over that of the curves."""
+        longest = max([title for title, *_ in CURVES.values()], key=len)
+        width = float(self._size_of(longest)[0]) + NAME / self._size["inner_width"]
+        # In a plot that is too narrow for any name half of it is for the curves.
+        return max(NAMED, 1.0 / max(1.0 - width, 0.5))
+
+    @property
     def _last(self) -> float:
         """The upper limit of the axis of iterations."""
         return float(self.figure.x_range.reset_end)
@@ -288,8 +290,11 @@ class Convergence(ErrorPlot):
         return f"{self.type_size:g}px"
 
     def _resize(self, name: str, old: float, new: float) -> None:
-        # A figure that is out of sight reports a size of zero.
-        self._size[name] = max(float(new), LEAST_SIZE)
+        super()._resize(name, old, new)
+        # Names stand at distances in px.
+        if self._shown is not None:
+            with pn.io.hold():
+                self.update(*self._shown)
 
     def _go_back(self, event: Any) -> None:
         """Show the iterate nearest to a tap."""

@@ -80,8 +80,10 @@ class Obstacles:
         self._picture = picture
 
     def covered_by(self, word: Word) -> bool:
-        """Check whether a label covers bodies, an arrow or a handle."""
-        return self.has_bodies_below(word) or self.has_arrows_below(word)
+        """Check whether a label covers bodies, the ground, an arrow or a handle."""
+        if self.has_bodies_below(word) or self.has_ground_below(word):
+            return True
+        return self.has_arrows_below(word)
 
     def has_bodies_below(self, word: Word) -> bool:
         """Check whether a label covers bodies."""
@@ -89,6 +91,15 @@ class Obstacles:
         if not lies_on(self.layout, word, *self._whole):
             return False
         return lies_on(self.layout, word, *self._cells)
+
+    def has_ground_below(self, word: Word) -> bool:
+        """Check whether a label covers the ground of a case, and is not its name.
+
+        Loads act through ground that is all around.
+        """
+        if word.color == GROUND_COLOR or self._picture.is_around:
+            return False
+        return lies_on(self.layout, word, *self._ground)
 
     def has_arrows_below(self, word: Word) -> bool:
         """Check whether a label covers an arrow or a handle."""
@@ -112,6 +123,12 @@ class Obstacles:
         """Lower left and upper right corners of all cells, (n_cells, 2) each, px."""
         cells = self._picture.frame.run.geometry.cells
         corners = self._picture.page(self._picture.nodes[cells])
+        return corners.min(axis=1), corners.max(axis=1)
+
+    @cached_property
+    def _ground(self) -> tuple[Array, Array]:
+        """Lower left and upper right corners of the ground, (n, 2) each, px."""
+        corners = self._picture.page(self._picture.ground)
         return corners.min(axis=1), corners.max(axis=1)
 
     @cached_property
@@ -342,7 +359,7 @@ def _names_aside(picture: Picture, line: Array) -> list[Word]:
 
 
 def _apart(words: Sequence[Word], obstacles: Obstacles) -> list[Word]:
-    """Labels, moved up, down or aside, off earlier ones, arrows and bodies.
+    """Labels, moved up, down or aside, off earlier ones, arrows, bodies and ground.
 
     They go to the next place that is free, and from which a line may lead to an arrow
     that is far; where there is none, arrows come before bodies.
@@ -356,6 +373,7 @@ def _apart(words: Sequence[Word], obstacles: Obstacles) -> list[Word]:
             return (
                 obstacles.has_arrows_below(place),
                 obstacles.has_bodies_below(place),
+                obstacles.has_ground_below(place),
                 _is_cut(_leader(place, obstacles), others, obstacles),
             )
 

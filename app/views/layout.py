@@ -37,6 +37,9 @@ IMAGE = 26.0
 """Largest depth of a gap in a low figure, and depth of the image below bodies, px."""
 MOST = 1.25
 """Largest motion over the room for it with which a magnification is kept."""
+FARTHEST = 2.0
+"""Largest motion of an iterate over that room with which it has the magnification of
+its run."""
 GROUND = 26.0
 """Depth of the ground of a case, px."""
 ROW = 1.3
@@ -295,14 +298,27 @@ class Layout:
 
         `largest` is the largest displacement over all instants along x and y, (2,), m.
         """
-        room = np.where(self.motion > 0.0, self.motion, np.inf)
-        share = float((largest * self.scale / room).max())
+        share = self._share_of(largest)
         if share <= 0.0:
             return factor or 1.0
         # A factor that followed each frame would hide that displacements change.
         if factor is not None and 0.2 <= factor * share <= MOST:
             return factor
         return float(f"{1.0 / rounded_up(share / 1.001):.6g}")
+
+    def limited(self, largest: Array, factor: float) -> float:
+        """The factor, or a smaller one for a motion that would go far beyond its room.
+
+        `largest` is as in `fitting`.
+        """
+        if factor * self._share_of(largest) <= FARTHEST:
+            return factor
+        return self.fitting(largest, None)
+
+    def _share_of(self, largest: Array) -> float:
+        """Largest displacement, along x and y, (2,), m, over the room for motion."""
+        room = np.where(self.motion > 0.0, self.motion, np.inf)
+        return float((largest * self.scale / room).max())
 
 
 def shape_of(geometry: Geometry) -> str:

@@ -112,7 +112,7 @@ class Picture:
         """Columns of all sources, by their names."""
         bodies = _drawn(self._geometry.outlines, self.nodes)
         return {
-            "ground": self._ground(),
+            "ground": self.many(self.ground),
             "image": self._line(self._image(bodies)),
             "bodies": self._line(bodies),
             "strokes": self._columns(self._strokes()),
@@ -136,26 +136,30 @@ class Picture:
         return float(self.layout.size[1] * self.layout.scale[1])
 
     @property
-    def _is_around(self) -> bool:
+    def is_around(self) -> bool:
         """Check whether the ground of a case is all around the bodies."""
         surroundings = self.layout.surroundings
         return surroundings is not None and surroundings.place == "around"
 
-    def _ground(self) -> Columns:
-        """Patches of the ground of a case, below the bodies or on both sides."""
+    @cached_property
+    def ground(self) -> Array:
+        """Patches of the ground of a case, below the bodies or on both sides.
+
+        Shape (n, k, 2), px from the middle of the foot.
+        """
         if not self._has_ground:
-            return {"xs": [], "ys": []}
+            return np.zeros((0, 4, 2))
         edge = ground_edge(self.layout, self.factor)
         low = edge[:, 1].min() - GROUND
         foot = np.array([[edge[-1, 0], low], [edge[0, 0], low]])
-        if self._is_around and self.is_of_any_shape:
+        if self.is_around and self.is_of_any_shape:
             # Bodies of any shape have no upper side like the lower: it is behind all.
             edge = edge + np.array([0.0, self._top + GROUND])
         patch = np.concatenate([edge, foot])
         patches = [patch]
-        if self._is_around and not self.is_of_any_shape:
+        if self.is_around and not self.is_of_any_shape:
             patches.append([0.0, self._top] - [-1.0, 1.0] * patch)
-        return self.many(np.stack(patches))
+        return np.stack(patches)
 
     def _image(self, bodies: Array) -> Array:
         """The bodies turned by 180 degrees, if the support is their image.
@@ -300,7 +304,7 @@ class Picture:
         status = self.frame.deformed.status[:, self.column]
         chains = self._geometry.chains
         lines = bands(self.points, chains, status)
-        if self._is_around and not self.is_of_any_shape:
+        if self.is_around and not self.is_of_any_shape:
             # Ground all around straight bodies touches their upper side, too.
             for kind, line in lines.items():
                 other = [0.0, self._top] - [-1.0, 1.0] * line

@@ -15,7 +15,7 @@ from app.frame import LINEAR, LOCAL, Frame, Selection
 from app.views.acts import gapped, hatched
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO, WRITTEN
-from app.views.parts import LEAST, bare
+from app.views.parts import bare
 from app.views.view import TEXT, ExtraView
 from app.worker.pieces import Pieces, StageFields
 from solver.arrays import Array, Indices
@@ -112,15 +112,13 @@ class PiecesView(ExtraView):
         self.mark(marks)
         keys = self.legend(*marks, place="center")
         keys.location = "bottom_left"
-        self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
         self._scales: dict[str, float] = {}
         self._scene = ""
         self._tapped: int | None = None
         self._placed: _Placed | None = None
         self._last: tuple[Pieces, Frame, Selection] | None = None
         plot.on_event(Tap, self._tap)
-        for size in self._size:
-            plot.on_change(size, self._resize)
+        self.follow_size(WIDTH, HEIGHT)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the pieces of a frame, or nothing if the frame has none."""
@@ -258,7 +256,7 @@ class PiecesView(ExtraView):
         return ", ".join(texts)
 
     def _resize(self, name: str, old: float, new: float) -> None:
-        self._size[name] = max(float(new), LEAST)
+        super()._resize(name, old, new)
         if self._last is not None:
             with pn.io.hold():
                 self._show(*self._last)

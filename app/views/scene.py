@@ -30,9 +30,10 @@ from app.views.colors import (
 from app.views.hints import NONE, hints_of
 from app.views.labels import labels_of
 from app.views.layout import Layout, layout_of
-from app.views.parts import LEAST, bare, color_bar, explain
+from app.views.parts import bare, color_bar, explain
 from app.views.picture import Picture
 from app.views.view import View
+from solver.arrays import Array
 from solver.files.amounts import number, unit_for
 from solver.settings.scene import Settings
 
@@ -75,6 +76,7 @@ class Scene(View):
         self._peaks: dict[str, float] = {}
         self._dragged: dict[str, tuple[Arrows, Settings]] = {}
         self._factor: float | None = None
+        self._settled: tuple[object, float] | None = None
         self._shown: tuple[Frame, Selection, Frame | None] | None = None
         self.picture: Picture | None = None
         self._held: tuple[Arrows | Rest, Picture] | None = None
@@ -83,9 +85,7 @@ class Scene(View):
         plot.on_event(Pan, self._drag)
         plot.on_event(PanEnd, self._let_go)
         plot.on_event(Tap, self._select)
-        self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
-        for size in self._size:
-            plot.on_change(size, self._resize)
+        self.follow_size(WIDTH, HEIGHT)
 
     def _draw(self, plot: figure) -> None:
         """Add all layers from the bottom to the top, and the legend."""
@@ -207,10 +207,6 @@ class Scene(View):
         self.fill("ghost", **past)
         self._show_keys(frame, layout, selection.stage)
 
-    def lay_out(self, width: float, height: float) -> None:
-        """Lay out the picture for a size of the figure, px."""
-        self._size = {"inner_width": width, "inner_height": height}
-
     def _layout_of(self, frame: Frame) -> Layout:
         type_size = float(self.words.removesuffix("px"))
         width, height = self._size.values()
@@ -231,14 +227,41 @@ class Scene(View):
             self._peaks = {}
             self._dragged = {}
         # Along the time of a frame the scale stays, so that motions can be compared.
-        if self._factor is None or shown is not frame:
-            self._factor = self._magnification(frame, layout)
+        self._factor = self._magnification(frame, layout)
+        if shown is not frame:
             self._scale_arrows(frame)
 
     def _magnification(self, frame: Frame, layout: Layout) -> float:
-        """Factor on displacements for which a frame fits into the figure."""
-        largest = np.nanmax(np.abs(frame.deformed.nodes), axis=(0, 2), initial=0.0)
-        return layout.fitting(largest, self._factor)
+        """Factor on displacements: that of the end of the run, for all of its iterates.
+
+        Runs of one structure in one figure share it as long as motion is visible and
+        fits. While the end of a run is not known, its iterates have theirs.
+        """
+        largest = frame.deformed.largest
+        end = self._end_of(frame)
+        if end is None:
+            return layout.fitting(largest, self._factor)
+        key = frame.run.structure, layout.width, layout.height
+        before = None
+        if self._settled is not None and self._settled[0] == key:
+            before = self._settled[1]
+        factor = layout.fitting(end, before)
+        self._settled = key, factor
+        return layout.limited(largest, factor)
+
+    def _end_of(self, frame: Frame) -> Array | None:
+        """Largest displacements at the end of a run along x and y, (2,), m, if known.
+
+        They are those of its reference; of a run without one, those of its last frame.
+        """
+        newest = self.state.newest
+        if newest is None or newest.run.number != frame.run.number:
+            newest = frame
+        if newest.run.reference_moved is not None:
+            return newest.run.reference_moved
+        if newest.status is not None:
+            return newest.deformed.largest
+        return None
 
     def _rests(self, run: Run) -> list[Rest]:
         """Handles of loads that were drawn before, and are zero in a run."""
@@ -282,7 +305,7 @@ class Scene(View):
             self._peaks[act.where] = peak
 
     def _resize(self, name: str, old: float, new: float) -> None:
-        self._size[name] = max(float(new), LEAST)
+        super()._resize(name, old, new)
         if self._shown is not None:
             with pn.io.hold():
                 self.update(*self._shown)

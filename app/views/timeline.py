@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from itertools import zip_longest
 from typing import Any
 
 import numpy as np
+import panel as pn
 from bokeh.events import Pan, Tap
 from bokeh.models import CustomJS, PanTool
 
@@ -15,7 +17,7 @@ from app.views.acts import unit_of
 from app.views.colors import ERROR, FORCE, UNSEEN
 from app.views.layout import is_equal, is_opposite
 from app.views.parts import bare
-from app.views.view import View
+from app.views.view import LETTER, View
 from solver.arrays import Array
 from solver.discrete.structure import Act, Description
 from solver.files.amounts import Unit, number, unit_for
@@ -27,7 +29,13 @@ HIGH = 3.2
 MARKED = 1.4
 """Ends of the axis up, and upper end of the line of an instant: paths lie between -1
 and 1, and their names above that line."""
-
+ANOTHER = 1.9
+"""Height of a further line of names, in units of that axis."""
+ENTRY = 22.0
+"""Width of the mark of a name with its distances, px."""
+WIDTH = 800.0
+HEIGHT = 44.0
+"""Size of the frame until the browser reports its own, px."""
 MARK = "legend.change.emit()"
 """Script that has a legend painted. Bokeh makes its entries anew where one changes, and
 leaves their marks blank until something else in the figure is painted: of a run whose
@@ -44,6 +52,7 @@ class Timeline(View):
         plot = bare(40, (-0.01, 1.01), (LOW, HIGH))
         self._figure = plot
         self._number = 0
+        self._names: list[str] = []
         axis = plot.xaxis
         axis.major_label_standoff = 1
         axis.axis_line_alpha = 0.4
@@ -66,6 +75,7 @@ class Timeline(View):
         plot.add_tools(PanTool(dimensions="width"))
         for event in (Pan, Tap):
             plot.on_event(event, self._select)
+        self.follow_size(WIDTH, HEIGHT)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the load paths of a run, and the instant."""
@@ -104,8 +114,25 @@ class Timeline(View):
         for path, title in zip_longest(PATHS, titles, fillvalue=""):
             self.show(path, title, may_come_back=False)
         # On a phone the names of more than two paths fill the line.
-        has_room = count <= 2 or not self.state.is_narrow
-        self.show("time", has_room and f"t in {unit.name}")
+        time = ""
+        if count <= 2 or not self.state.is_narrow:
+            time = f"t in {unit.name}"
+        self.show("time", time)
+        self._names = [*titles, time]
+        self._make_room()
+
+    def _make_room(self) -> None:
+        """Make room above the paths for all lines of their names."""
+        width = 0.0
+        for name in self._names:
+            width += LETTER * self.type_size * len(name) + ENTRY
+        lines = max(math.ceil(width / self._size["inner_width"]), 1)
+        self.figure.y_range.end = HIGH + ANOTHER * (lines - 1)
+
+    def _resize(self, name: str, old: float, new: float) -> None:
+        super()._resize(name, old, new)
+        with pn.io.hold():
+            self._make_room()
 
     def _select(self, event: Any) -> None:
         """Select the instant under the pointer."""

@@ -9,6 +9,7 @@ from itertools import zip_longest
 from typing import Any, ClassVar
 
 import numpy as np
+import panel as pn
 from bokeh import models
 from bokeh.core.properties import validate, value
 from bokeh.events import LegendItemClick
@@ -35,8 +36,9 @@ from numpy.typing import ArrayLike
 from app.frame import Floats, Frame, Selection
 from app.state import PageState
 from app.views.axis import Axis
-from app.views.colors import CUT, FLAG
-from app.views.parts import visuals
+from app.views.colors import CUT, FLAG, PAPER
+from app.views.flags import Place, curves_of, place_off
+from app.views.parts import LEAST, visuals
 from solver.settings.scene import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
@@ -45,6 +47,12 @@ SHORT = 200
 TEXT = "12px"
 WORDS = "14px"
 """Type sizes of plots, and of words at arrows, as CSS has them."""
+WIDTH = 380.0
+HEIGHT = 160.0
+"""Size of a plot until the browser reports its own, px."""
+LETTER = 0.56
+ROW = 1.3
+"""Width of a letter and height of a line of words over their type size, about."""
 TICKS = 6
 FEW_TICKS = 3
 """Number of ticks up an axis that have room, and those in large type."""
@@ -124,6 +132,7 @@ class View:
         self.beside: figure | None = None
         self.is_held = False
         self.sources: dict[str, ColumnDataSource] = {}
+        self._size: dict[str, float] = {}
         self._items: dict[str, LegendItem] = {}
 
     @cached_property
@@ -151,6 +160,20 @@ class View:
     def layout(self) -> Any:
         """The figure for a card: alone, or laid out with another one."""
         return self.figure
+
+    def follow_size(self, width: float, height: float) -> None:
+        """Follow the size of the figure, px, and begin with a size."""
+        self.lay_out(width, height)
+        for name in self._size:
+            self._figure.on_change(name, self._resize)
+
+    def lay_out(self, width: float, height: float) -> None:
+        """Lay out what is drawn for a size of the figure, px."""
+        self._size = {"inner_width": width, "inner_height": height}
+
+    def _resize(self, name: str, old: float, new: float) -> None:
+        # A figure that is out of sight reports a size of zero.
+        self._size[name] = max(float(new), LEAST)
 
     def hold(self, is_held: bool) -> None:
         """Hold back all painting of the figures, or resume it."""
@@ -204,47 +227,84 @@ class View:
         self.add("level", "HSpan", "y", color=FLAG, line_dash="dashed", line_width=1.5)
         look = {"marker": "inverted_triangle", "size": 12, "color": FLAG}
         self.add("flag", "Scatter", "x y", **look)
-        self.add(
+        self._flag_text = self.add(
             "flag text",
             "Text",
             "x y text text_align text_baseline y_offset",
             text_color=FLAG,
             text_font_style="bold",
-            text_font=value("Roboto, sans-serif"),
             text_font_size=self.words,
+            # What it lies on, where no place is free, is to be read through.
+            background_fill_alpha=0.75,
         )
+        self._flagged: Frame | None = None
+        self.follow_size(WIDTH, HEIGHT)
+        for name in self._size:
+            self._figure.on_change(name, lambda attr, old, new: self._move_flag())
+
+    def _move_flag(self) -> None:
+        """Place the name of the flag again, in a figure of another size."""
+        # Before it was shown the axes have no limits.
+        if self._flagged is not None:
+            with pn.io.hold():
+                self.show_flag(self._flagged)
 
     def show_flag(self, frame: Frame) -> None:
         """Mark the known number of the case if it stands in this plot."""
+        self._flagged = frame
         case = self.state.trade_case
         flag = None
         if case is not None and case.knows(frame.run.settings):
             flag = case.flag
-        points = np.zeros((2, 0))
-        levels = np.zeros(0)
-        texts = []
-        if flag is not None and flag.plot == self.name:
-            texts = [flag.text]
-            points = np.array([[float(self.x(flag.x))], [float(self.y(flag.y))]])
-            if math.isnan(flag.x):
-                # Any x: a line, whose name stands at its left end.
-                levels = points[1]
-                points[0] = self._figure.x_range.reset_start
-        x, y = points
+        if flag is None or flag.plot != self.name:
+            for name in ("level", "flag", "flag text"):
+                self.fill(name, **{key: [] for key in self.sources[name].data})
+            return
+        x = float(self.x(flag.x))
+        y = float(self.y(flag.y))
+        # Any x: a line.
+        levels = []
+        marks = [(x, y)]
+        if math.isnan(x):
+            levels = [y]
+            marks = []
         self.fill("level", y=levels)
-        self.fill("flag", x=x[: len(x) - len(levels)], y=y[: len(y) - len(levels)])
-        # The text stands where the plot has room: below a loop that rises to the right.
-        is_right = x > _within(self._figure.x_range, 0.5)
-        is_above = y > _within(self._figure.y_range, 0.2)
+        self.fill("flag", x=[at[0] for at in marks], y=[at[1] for at in marks])
+        place = self._place_of_flag(flag.text, x, y)
+        start, end = _limits(self._figure.x_range)
+        across = start + place.x / self._size["inner_width"] * (end - start)
         self.fill(
             "flag text",
-            x=x,
-            y=y,
-            text=texts,
-            text_align=np.where(is_right, "right", "left").tolist(),
-            text_baseline=np.where(is_above, "top", "bottom").tolist(),
-            y_offset=np.where(is_above, 9.0, -9.0),
+            x=[across],
+            y=[y],
+            text=[flag.text],
+            text_align=[place.text_align],
+            text_baseline=[place.text_baseline],
+            y_offset=[place.y_offset],
         )
+        paper = PAPER[self.state.is_dark]
+        self._flag_text.glyph.background_fill_color = paper
+
+    def _place_of_flag(self, text: str, x: float, y: float) -> Place:
+        """Place of the name of a flag at a point in units of the axes.
+
+        At x NaN it names a line.
+        """
+        room = np.array([*self._size.values()])
+        across = _limits(self._figure.x_range)
+        up = _limits(self._figure.y_range)
+        low = np.array([across[0], up[0]])
+        at = (np.array([x, y]) - low) / ([across[1], up[1]] - low) * room
+        anchors = [(at[0], "left"), (at[0], "right"), (at[0], "center")]
+        if at[0] > 0.5 * room[0]:
+            anchors = [(at[0], "right"), (at[0], "left"), (at[0], "center")]
+        if math.isnan(x):
+            width = float(room[0])
+            anchors = [(0.0, "left"), (width, "right"), (0.5 * width, "center")]
+        letters = np.array([LETTER * len(text), ROW])
+        size = float(self.words.removesuffix("px")) * letters
+        curves = curves_of(self._figure, across, up, room)
+        return place_off(curves, anchors, float(at[1]), size, room)
 
     def begin(
         self, x: tuple[str, ...] = ("",), y: tuple[str, ...] = ("",), **more: Any
@@ -435,9 +495,9 @@ class ExtraView(View):
         raise NotImplementedError
 
 
-def _within(axis: Range1d, share: float) -> float:
-    """Value at a share of the length of an axis."""
-    return float((1.0 - share) * axis.reset_start + share * axis.reset_end)
+def _limits(axis: Range1d) -> Floats:
+    """Limits of an axis that has not been zoomed, shape (2,)."""
+    return np.array([axis.reset_start, axis.reset_end])
 
 
 def _sent(values: Any) -> Any:
@@ -478,6 +538,13 @@ def magnify(plot: figure, size: str, words: str) -> None:
     # Each by itself: an em is 13 pixels to axes, whatever the style.
     for model in (plot, *plot.legend):
         model.styles = {**model.styles, "font-size": size}
+    # Marks of legends are as large as their words: on a projector colours are seen.
+    pixels = round(float(size.removesuffix("px")))
+    marks = dict.fromkeys(("glyph_width", "glyph_height", "label_height"), pixels)
+    for box in plot.legend:
+        box.update(tags=[marks], **marks)
+        if not box.js_property_callbacks:
+            box.js_on_change("glyph_width", keep)
     # Bokeh's own search would go through the figure for each kind.
     parts = plot.references()
     for part in parts:
@@ -518,6 +585,8 @@ def legend(plot: figure, items: Sequence[Any], place: str = "above") -> Legend:
         glyph_height=12,
         glyph_width=12,
         background_fill_alpha=0.0,
+        # The page's theme has none, but not that of a page that is saved.
+        border_line_color=None,
         styles=styles,
         stylesheets=sheets,
     )

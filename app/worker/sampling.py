@@ -136,6 +136,7 @@ class Sampler:
         if reference is not None:
             known["reference"] = self._contact(reference, self.problem.contacts)
             known["reference_loop"] = self._loop(reference)
+            known["reference_moved"] = self.drawn.deformed(reference).largest
             known["reference_seconds"] = reference.seconds
         self.run = replace(self.run, **known)
 

@@ -20,6 +20,9 @@ OUTWARD = {
     "top": (0.0, 1.0),
 }
 """Sides of all bodies together, and the outward normal of each."""
+MOVED = "u", "v"
+"""Symbols of prescribed displacements along x and y: words in a drawing have no
+subscripts."""
 Direction = tuple[float, float]
 
 

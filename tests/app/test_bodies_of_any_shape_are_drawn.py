@@ -325,7 +325,7 @@ def test_equal_loads_have_one_word() -> None:
     assert shown(frame, 0.5).picture.layout.equals.count(len(bands)) == 1  # type: ignore[union-attr]
     # Beside the time line they are told apart by their places.
     names = [title.partition(" = ")[0] for title, _ in paths_of(frame.run)]
-    assert sorted(names) == ["F (band)", "F (plate)", "u_x"]
+    assert sorted(names) == ["F (band)", "F (plate)", "u"]
 
 
 def test_the_weight_of_an_arch_is_read_at_its_arrow() -> None:
@@ -412,7 +412,7 @@ def test_a_plate_that_is_held_at_both_ends_has_rollers_at_each() -> None:
     assert [np.ptp(each.points[:, 0]) for each in rollers] == pytest.approx([0, 0])
     sides = [each.outward.mean(axis=0).tolist() for each in rollers]
     assert sides == [pytest.approx([-1.0, 0.0]), pytest.approx([1.0, 0.0])]
-    (act,) = (act for act in description.acts if act.symbol == "u_x")
+    (act,) = (act for act in description.acts if act.symbol == "u")
     # It stands where a displacement to the right pulls.
     assert act.outward == pytest.approx((1.0, 0.0))
 

@@ -161,6 +161,23 @@ def test_the_name_of_the_goal_is_at_its_line_and_on_no_curve(
         assert not meet(box, points, points), name
 
 
+@pytest.mark.parametrize("width", [230.0, 380.0, 700.0])
+@pytest.mark.parametrize("size", ["12px", "19px"])
+def test_names_at_the_ends_of_curves_are_whole_in_a_narrow_plot(
+    width: float, size: str
+) -> None:
+    answer = frames_of("bar")[2]
+    view = view_of(Convergence, answer)
+    view.magnify(size)
+    view.lay_out(width, HEIGHT)
+    shown(view, answer)
+    names = view.sources["names"].data
+    assert names["text"]
+    for x, text in zip(names["x"], names["text"], strict=True):
+        begin = x / view.figure.x_range.reset_end * width
+        assert begin + 0.5 * float(size.removesuffix("px")) * len(text) <= width
+
+
 def test_an_answer_of_few_iterations_is_no_line_at_the_left_edge_of_its_axis() -> None:
     first, _, answer = frames_of("bar")
     view = view_of(Convergence, first)

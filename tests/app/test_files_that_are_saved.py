@@ -17,9 +17,13 @@ import frames
 import numpy as np
 import pandas as pd
 import pytest
+from bokeh.models import Text
+from pictures import boxes_of_words
 from small_scenes import SMALL as SMALLEST
 
 from app.files.export import (
+    NARROWEST,
+    _copies,
     contact_table,
     history_table,
     offers,
@@ -29,7 +33,7 @@ from app.files.export import (
     program,
 )
 from app.files.tables import table_of
-from app.frame import Frame
+from app.frame import Frame, Selection
 from app.messages import TABLE, Needs, Start
 from app.state import PageState, default_settings
 from app.views.catalogue import CARDS
@@ -51,6 +55,8 @@ SMALL: dict[str, dict[str, Any]] = {
     "layers": {"instants": 9},
     "rope": {"instants": 9, "elements": 20},
 }
+PHONE = 390 - 2 * 12
+"""Width of a phone without the margins of a saved page, px."""
 
 
 @cache
@@ -194,7 +200,7 @@ def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
     # Beside the margins of a phone of 390 px.
     widths = [int(width) for width in re.findall(r'"min_width": (\d+)', kept)]
     assert widths
-    assert max(widths) <= 390 - 2 * 12
+    assert max(widths) <= PHONE
     # The page's own figures are as they were.
     assert [view.figure.height for view in views] == before
 
@@ -209,9 +215,27 @@ def test_the_offline_page_is_made_of_every_kind_of_scene(scene: str) -> None:
     assert "<figcaption>Contact force</figcaption>" in text
 
 
+@pytest.mark.parametrize("scene", ["block", "wall", "arch", "belt", "mesh"])
+def test_words_of_a_saved_picture_are_whole_on_a_phone_without_the_font(
+    scene: str,
+) -> None:
+    settings = default_settings(scene).replace(**SMALLEST[scene])
+    frame = frames.frame_of(settings, Needs(extras=frozenset()), ends=False)
+    state = PageState(settings, frame=frame, newest=frame)
+    (view,) = _copies([Scene(state)], frame.run)
+    view.update(frame, Selection(0.4), None)
+    (size,) = {glyph.text_font_size for glyph in view.figure.select(Text)}
+    # A bold letter of DejaVu Sans; the picture is as wide as the phone.
+    letter = 0.7 * float(size.removesuffix("px")) * NARROWEST / PHONE
+    for text, box in boxes_of_words(view, letter=letter):
+        assert box[0, 0] >= 0.0, text
+        assert box[1, 0] <= NARROWEST, text
+
+
 def test_the_offline_page_tells_status_and_all_settings_as_the_page_does() -> None:
     state, views = page("bar")
-    text = offline_page(state, views[:2])
+    # A long name goes on in the next line behind a dash, on a phone.
+    text = offline_page(state, views[:2]).replace("<wbr>", "")
     assert "certified" in text
     for name in state.settings.definitions():
         assert (f"<code>{name}</code>" in text) == state.settings.applies(name), name

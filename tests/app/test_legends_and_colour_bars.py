@@ -4,10 +4,11 @@ import pytest
 from bokeh.models import ColorBar, LinearColorMapper
 from pictures import frame_of, shown, small
 
+from app.frame import Selection
 from app.state import PageState, default_settings
 from app.views.parts import bare, color_bar, explain
 from app.views.rope import WireSection
-from app.views.scene import Stress
+from app.views.scene import Scene, Stress
 from app.views.timeline import Timeline
 from app.views.view import View
 
@@ -21,6 +22,32 @@ def test_an_entry_that_changes_has_the_legend_of_the_time_line_painted() -> None
             (script,) = item.js_property_callbacks[f"change:{change}"]
             assert script.args == {"legend": legend}
             assert "change.emit" in script.code
+
+
+def test_marks_of_a_legend_are_as_large_as_its_words() -> None:
+    # Colours that stand for stick and slip are seen from the last row, too.
+    view = Scene(PageState(default_settings("bar")))
+    (legend,) = view.figure.legend
+    view.magnify("28px")
+    assert legend.glyph_height == legend.glyph_width == 28
+    # The browser sets sizes of the theme in their place, which a script takes back.
+    assert legend.tags == [dict.fromkeys(legend.tags[0], 28)]
+    assert "change:glyph_width" in legend.js_property_callbacks
+    view.magnify("12px")
+    assert legend.glyph_height == 12
+
+
+def test_names_of_many_paths_stand_above_the_paths_on_a_phone() -> None:
+    settings = small("wall")
+    view = Timeline(PageState(settings))
+    plot = view.figure
+    view.lay_out(900.0, 44.0)
+    view.update(frame_of(settings), Selection(), None)
+    wide = plot.y_range.end
+    view._resize("inner_width", 900.0, 320.0)
+    assert plot.y_range.end > wide
+    view._resize("inner_width", 320.0, 900.0)
+    assert plot.y_range.end == wide
 
 
 def test_a_colour_bar_is_laid_out_anew_for_other_values_and_only_then() -> None:

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from pictures import PHASES, coarse, frame_of, shown, small
+from views import frames_of
 
 from app.frame import Frame, Selection
 from app.messages import Needs, Start
@@ -134,6 +135,27 @@ def test_the_magnification_holds_while_motion_is_seen() -> None:
     factor = layout.fitting((1e-5, 2e-5), None)
     assert layout.fitting((0.5e-5, 1e-5), factor) == factor
     assert layout.fitting((1e-7, 2e-7), factor) > factor
+
+
+def test_a_run_is_drawn_alike_whatever_was_shown_of_it_before() -> None:
+    first, on_the_way, last = frames_of("bar")
+
+    def factor_after(*frames: Frame) -> float:
+        scene = Scene(PageState(last.run.settings))
+        for number, frame in enumerate(frames, 1):
+            # A frame that is gone back to is not the newest.
+            scene.state.newest = max(frames[:number], key=lambda each: each.iteration)
+            _ = scene.figure
+            scene.update(frame, Selection(), None)
+        picture = scene.picture
+        assert picture is not None
+        return picture.factor
+
+    alone = factor_after(last)
+    # At its first iterate nobody knows how far the bodies of a run move.
+    assert factor_after(first) != alone
+    assert factor_after(first, on_the_way, last) == alone
+    assert factor_after(last, first) == alone
 
 
 def test_bands_meet_between_points_of_different_status() -> None:

@@ -226,7 +226,7 @@ class Done:
         link = f'<a href="{reports.PAGE}?scene=bar">a run</a>'
         self.files = {
             "proof.csv": b"a,b",
-            "proof.html": f"<style></style>{link}".encode(),
+            "proof.html": f"<html><style></style>{link}</html>".encode(),
         }
 
     def close(self) -> None:
@@ -248,4 +248,7 @@ def test_a_report_is_read_with_its_files_and_its_links_lead_here(
     made.start()
     assert "a run" in made.page.object
     assert "localhost" not in made.page.object
+    assert "color-scheme: light" in made.page.object
+    made.state.is_dark = True
+    assert "color-scheme: dark" in made.page.object
     assert [file.filename for file in made.files] == ["proof.csv", "proof.html"]

@@ -106,10 +106,18 @@ def test_a_network_that_breaks_and_is_mended_costs_no_settings(
     # Of a message that is cut in two Bokeh's client keeps the first part for the next
     # connection.
     wait_for(lambda: time.monotonic() > proxy.heard_at + QUIET)
+    sign = page.locator("#network")
+    expect(sign).to_be_hidden()
     with page.expect_console_message(lambda message: "Lost websocket" in message.text):
         proxy.cut()
+    expect(sign).to_contain_text("does not answer")
+    # A device knows it sooner than a socket closes.
+    page.context.set_offline(True)
+    expect(sign).to_contain_text("No network")
+    page.context.set_offline(False)
     with page.expect_console_message(lambda message: "is now open" in message.text):
         proxy.mend()
+    expect(sign).to_be_hidden()
     enter(page, "Peak load", "1100", over="1000")
     expect(figures(page)).to_contain_text("Force −1.1 kN")
     is_solved(page)

@@ -169,7 +169,7 @@ def test_a_cap_stays_straight_and_a_guided_one_level(cap):
     assert np.abs(moved - line).max() < 1e-8
     # What moves both ends of a guided cap, too, is drawn at the top alone.
     drawn = [act.symbol for act in settings.bodies.description().acts]
-    assert drawn.count("u_x") == 1
+    assert drawn.count("u") == 1
     if cap == "free":
         assert turns > 1e-6
     else:

@@ -45,7 +45,15 @@ from solver.discrete.plane.joint import Joint
 from solver.discrete.plane.node_pairs import NodePairs, kinds_of
 from solver.discrete.probes import constant, mean_held, node_sum, reaction
 from solver.discrete.problem import Problem
-from solver.discrete.structure import Act, Axes, Description, Direction, Footing, Loop
+from solver.discrete.structure import (
+    MOVED,
+    Act,
+    Axes,
+    Description,
+    Direction,
+    Footing,
+    Loop,
+)
 from solver.laws import FrictionLaw
 
 STRAIGHT = 1e-9
@@ -314,7 +322,7 @@ class Bodies:
                 return
         for held in moved:
             towards = np.eye(2)[held.axis]
-            yield self._act(held, f"u_{'xy'[held.axis]}", towards, held.mean, "m")
+            yield self._act(held, MOVED[held.axis], towards, held.mean, "m")
 
     def _act(
         self,

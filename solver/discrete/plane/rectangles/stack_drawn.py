@@ -9,7 +9,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.plane.rectangles.bricks import Brick, grid_of
 from solver.discrete.plane.rectangles.sides import Side, SideComponent, Spring, Support
-from solver.discrete.structure import OUTWARD, Act, Hold, on_side
+from solver.discrete.structure import MOVED, OUTWARD, Act, Hold, on_side
 
 
 def _open_sides(sides: Mapping[str, Side], support: Support | None) -> dict[str, Side]:
@@ -48,7 +48,7 @@ def _act_on_side(
     towards = ((1.0, 0.0), (0.0, 1.0))[component]
     values = given.mean
     if given.prescribed:
-        symbol = f"u_{along}"
+        symbol = MOVED[component]
         unit = "m"
     elif given.is_pressure:
         symbol = "p"
@@ -119,7 +119,7 @@ def act_of_ground(settlement: Array, strips: Sequence[Brick], columns: int) -> A
     middle = 0.5 * (first + last) / columns
     return Act(
         where="bottom y",
-        symbol="u_y",
+        symbol=MOVED[1],
         points=on_side("bottom", [middle]),
         towards=(0.0, -1.0),
         values=settlement[size.argmax()],
