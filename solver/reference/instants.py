@@ -33,6 +33,8 @@ FIRST_PART = 0.25
 """Share of the load of an instant that is tried first where it is followed in parts."""
 SHORTEST_PART = 2.0**-12
 """Share of the load of an instant within which the solution is lost, where it jumps."""
+SHORT_PART = 2.0**-4
+"""The same where friction does not change with slip: beyond it contacts rarely hold."""
 SLIDES = 100
 """Largest number of slips up to the next solution, each with the friction that the slip
 before has left."""
@@ -237,8 +239,8 @@ class Instants:
     ) -> InstantSolution | None:
         """Seek an instant that no guess leads to; None without a solution.
 
-        Where the law is linear in the slip, a costly search is for instants at which
-        there may be an equilibrium; a whole step may miss what small ones follow.
+        Where friction does not change with slip, a costly search is for instants at
+        which there may be an equilibrium; a whole step may miss what small ones follow.
         `known` are states to try, shape (n,) each.
         """
         if not self._rules.is_nonlinear:
@@ -267,15 +269,19 @@ class Instants:
         # With these right-hand sides all increments are zero.
         pulled = -self.system.on_base(force)
         begin = RightSides(pulled, self._bound(max(instant - 1, 0)), held)
+        shortest = SHORT_PART
+        if rules.is_nonlinear:
+            shortest = SHORTEST_PART
         at, share = self._followed(
-            lambda _: self._newton, at, (begin, right_sides), known
+            lambda _: self._newton, at, (begin, right_sides), known, shortest
         )
         if share == 1.0:
             return at
         # Only friction that falls with slip lets the structure snap.
         if self.jumps_at is None and rules.softens:
             self.jumps_at = instant
-        if not self._may_hold(instant):
+        # Where friction does not change with slip softer springs have been tried.
+        if not rules.is_nonlinear or not self._may_hold(instant):
             return None
         if not rules.softens:
             newton = self._newton
@@ -288,6 +294,7 @@ class Instants:
         at: InstantSolution,
         right_sides: tuple[RightSides, RightSides],
         known: list[States],
+        shortest: float = SHORTEST_PART,
     ) -> tuple[InstantSolution, float]:
         """Follow a solution from some right-hand sides to others in steps.
 
@@ -301,6 +308,8 @@ class Instants:
             The right-hand sides at both ends.
         known
             States to try, shape (n,) each.
+        shortest
+            Length of a step, as a share, at which the solution is given up.
 
         Returns
         -------
@@ -318,7 +327,7 @@ class Instants:
                 at = following
                 share = target
                 length = 2.0 * length
-            elif length > SHORTEST_PART:
+            elif length > shortest:
                 length *= 0.25
             else:
                 break
