@@ -108,7 +108,7 @@ def curves_of(plot: figure, x: Array, y: Array, room: Array) -> list[Array]:
 
 
 def _bars(middles: Array, tops: Array, width: float) -> Iterator[tuple[Array, Array]]:
-    """Lines along the top and the middle of bars."""
+    """Yield x and y of lines along the top and the middle of each bar, (4,) each."""
     for middle, top in zip(middles, tops, strict=True):
         half = 0.5 * width
         across = np.array([middle - half, middle + half, middle, middle])
