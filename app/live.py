@@ -21,7 +21,8 @@ from app.views.layout import shape_of
 from app.views.parts import come_last, laid_out_alone
 from app.views.scene import Scene
 from app.views.timeline import Timeline
-from app.views.view import TEXT, View
+from app.views.type_size import TEXT
+from app.views.view import View
 from app.widgets import MEANINGS, PlainText, html, looks, wrapped
 
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")

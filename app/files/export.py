@@ -30,7 +30,8 @@ from app.views.pieces import PiecesView
 from app.views.scene import Scene
 from app.views.status_map import StatusMap
 from app.views.timeline import Timeline, given_in
-from app.views.view import TEXT, View
+from app.views.type_size import TEXT
+from app.views.view import View
 from app.widgets import TEMPLATES, download, up_to
 from app.worker.cells import thinned
 from app.worker.references import has_reference

@@ -8,7 +8,8 @@ from bokeh.models import ColumnDataSource, FreehandDrawTool
 from bokeh.plotting import figure
 
 from app.views.colors import FORCE, LATIN
-from app.views.view import FONT, TEXT, legend, magnify
+from app.views.legends import legend
+from app.views.type_size import FONT, TEXT, magnify
 from solver.settings.definitions import title_of
 from solver.study.lessons import Lesson
 

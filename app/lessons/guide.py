@@ -31,7 +31,8 @@ from app.lessons.curve import DrawnCurve
 from app.lessons.handout import handout
 from app.state import PageState
 from app.transport import Transport
-from app.views.view import TEXT, View
+from app.views.type_size import TEXT
+from app.views.view import View
 from app.widgets import dialog, download, looks, rebuilt, up_to
 from solver.study.lessons import SUBJECTS, Lesson
 from solver.study.trade_case import Case

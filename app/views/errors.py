@@ -16,7 +16,8 @@ from app.units import percent
 from app.views.axis import extent, rounded_up, whole
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
 from app.views.parts import hover
-from app.views.view import HEIGHT, LETTER, ROW, WIDTH, View
+from app.views.type_size import LETTER, ROW
+from app.views.view import HEIGHT, WIDTH, View
 from app.worker.references import has_reference
 
 SEEN = (1e-3, 10.0)
@@ -148,7 +149,7 @@ class Convergence(ErrorPlot):
         answers = []
         if newest.is_answer:
             answers = [newest.iteration]
-        foot = self._at(np.full(len(answers), FOOT / self._size["inner_height"]))
+        foot = self._at(np.full(len(answers), FOOT / self.room[1]))
         self.draw("answer", answers, foot)
         self._show_names(newest)
         self._show_goal(newest.run.settings.accuracy)
@@ -181,10 +182,10 @@ class Convergence(ErrorPlot):
                 (height,) = self._heights(data["y"][-1:])
                 names.append((height, float(data["x"][-1]), title, color))
         for iteration in self.sources["answer"].data["x"]:
-            foot = FOOT / self._size["inner_height"]
+            foot = FOOT / self.room[1]
             names.append((foot, float(iteration), "exact", ERROR))
         names.sort()
-        apart = APART * self.type_size / self._size["inner_height"]
+        apart = APART * self.type_size / self.room[1]
         (goal,) = self._heights([newest.run.settings.accuracy])
         heights = off(float(goal), [height for height, *_ in names], apart)
         self.fill(
@@ -229,7 +230,7 @@ class Convergence(ErrorPlot):
 
         They are as close to each other as the letters of words.
         """
-        fine = np.linspace(0.0, 1.0, round(self._size["inner_width"]))
+        fine = np.linspace(0.0, 1.0, round(self.room[0]))
         points = [np.zeros((0, 2))]
         for name in (*CURVES, "ghost"):
             data = self.sources[name].data
@@ -243,7 +244,7 @@ class Convergence(ErrorPlot):
         names = self.sources["names"].data
         for x, y, text in zip(names["x"], names["y"], names["text"], strict=True):
             width, height = self._size_of(text)
-            begin = x / self._last + NAME / self._size["inner_width"]
+            begin = x / self._last + NAME / self.room[0]
             along = np.linspace(begin, begin + width, len(text) + 1)
             middle = self._heights([y])
             for up in (middle - 0.3 * height, middle, middle + 0.3 * height):
@@ -253,13 +254,13 @@ class Convergence(ErrorPlot):
     def _size_of(self, text: str) -> Floats:
         """Width and height of a text over the size of the plot, about, shape (2,)."""
         letters = np.array([LETTER * len(text), ROW]) * self.type_size
-        return np.asarray(letters / [*self._size.values()])
+        return np.asarray(letters / self.room)
 
     @property
     def _named(self) -> float:
         """Length of the axis of iterations over that of the curves."""
         longest = max([title for title, *_ in CURVES.values()], key=len)
-        width = float(self._size_of(longest)[0]) + NAME / self._size["inner_width"]
+        width = float(self._size_of(longest)[0]) + NAME / self.room[0]
         # In a plot that is too narrow for any name half of it is for the curves.
         return max(NAMED, 1.0 / max(1.0 - width, 0.5))
 

@@ -1,18 +1,26 @@
-"""The name of a mark in a plot: of the places beside the mark, one off the curves.
+"""The flag of a case: the mark of its known number in a plot, and the name beside it.
 
-All positions are px from the lower left corner of the plot.
+Of the places beside the mark the name has one off the curves. All positions are px from
+the lower left corner of the plot.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from bokeh.models import Line, MultiLine, VBar
+import panel as pn
+from bokeh.models import Line, MultiLine, Range1d, VBar
 from bokeh.plotting import figure
 
+from app.frame import Frame
+from app.views.colors import FLAG, PAPER
+from app.views.type_size import LETTER, ROW
+from app.views.view import HEIGHT, WIDTH, View
 from solver.arrays import Array
+from solver.study.trade_case import PlotFlag
 
 GAP = 9.0
 """Distance of a name from its mark, px."""
@@ -34,6 +42,116 @@ class Place(NamedTuple):
     text_align: str
     text_baseline: str
     y_offset: float
+
+
+class Flag:
+    """The mark of the known number of a case in a plot, a point or a line, with a name.
+
+    Parameters
+    ----------
+    view
+        The view of the plot.
+    plot
+        Its figure, with linear axes that `View.begin` gave it.
+    """
+
+    def __init__(self, view: View, plot: figure) -> None:
+        self._view = view
+        self._plot = plot
+        self._shown: Frame | None = None
+        view.add("level", "HSpan", "y", color=FLAG, line_dash="dashed", line_width=1.5)
+        look = {"marker": "inverted_triangle", "size": 12, "color": FLAG}
+        view.add("flag", "Scatter", "x y", **look)
+        self._text = view.add(
+            "flag text",
+            "Text",
+            "x y text text_align text_baseline y_offset",
+            text_color=FLAG,
+            text_font_style="bold",
+            text_font_size=view.words,
+            # What it lies on, where no place is free, is to be read through.
+            background_fill_alpha=0.75,
+        )
+        view.follow_size(WIDTH, HEIGHT)
+        # After the view, which takes the new size first.
+        for name in ("inner_width", "inner_height"):
+            plot.on_change(name, self._move)
+
+    def _move(self, name: str, old: Any, new: Any) -> None:
+        """Place the name again, in a figure of another size."""
+        # Before it was shown the axes have no limits.
+        if self._shown is not None:
+            with pn.io.hold():
+                self.show(self._shown)
+
+    def show(self, frame: Frame) -> None:
+        """Show the flag if the number is known for a frame, and stands in this plot."""
+        self._shown = frame
+        view = self._view
+        point = self._known(frame)
+        if point is None:
+            for name in ("level", "flag", "flag text"):
+                view.fill(name, **{key: [] for key in view.sources[name].data})
+            return
+        x = float(view.x(point.x))
+        y = float(view.y(point.y))
+        # Any x: a line.
+        levels = []
+        marks = [(x, y)]
+        if math.isnan(x):
+            levels = [y]
+            marks = []
+        view.fill("level", y=levels)
+        view.fill("flag", x=[at[0] for at in marks], y=[at[1] for at in marks])
+        place = self._place(point.text, x, y)
+        start, end = _limits(self._plot.x_range)
+        view.fill(
+            "flag text",
+            x=[start + place.x / view.room[0] * (end - start)],
+            y=[y],
+            text=[point.text],
+            text_align=[place.text_align],
+            text_baseline=[place.text_baseline],
+            y_offset=[place.y_offset],
+        )
+        paper = PAPER[view.state.is_dark]
+        self._text.glyph.background_fill_color = paper
+
+    def _known(self, frame: Frame) -> PlotFlag | None:
+        """The point of the case in this plot, if the number is known for a frame."""
+        case = self._view.state.trade_case
+        if case is None or not case.knows(frame.run.settings):
+            return None
+        point = case.flag
+        if point is None or point.plot != self._view.name:
+            return None
+        return point
+
+    def _place(self, text: str, x: float, y: float) -> Place:
+        """Place of the name at a point in units of the axes.
+
+        At x NaN it names a line.
+        """
+        room = self._view.room
+        across = _limits(self._plot.x_range)
+        up = _limits(self._plot.y_range)
+        low = np.array([across[0], up[0]])
+        at = (np.array([x, y]) - low) / ([across[1], up[1]] - low) * room
+        anchors = [(at[0], "left"), (at[0], "right"), (at[0], "center")]
+        if at[0] > 0.5 * room[0]:
+            anchors = [(at[0], "right"), (at[0], "left"), (at[0], "center")]
+        if math.isnan(x):
+            width = float(room[0])
+            anchors = [(0.0, "left"), (width, "right"), (0.5 * width, "center")]
+        letters = np.array([LETTER * len(text), ROW])
+        size = float(self._view.words.removesuffix("px")) * letters
+        curves = curves_of(self._plot, across, up, room)
+        return place_off(curves, anchors, float(at[1]), size, room)
+
+
+def _limits(axis: Range1d) -> Array:
+    """Limits of an axis that has not been zoomed, shape (2,)."""
+    return np.array([axis.reset_start, axis.reset_end])
 
 
 def place_off(

@@ -23,6 +23,7 @@ from app.views.colors import (
     UNSEEN,
     scaled,
 )
+from app.views.flags import Flag
 from app.views.parts import hover
 from app.views.view import ExtraView, View
 from app.worker.cells import thinned
@@ -57,7 +58,7 @@ class HysteresisLoop(View):
         self.add("beside", color=BESIDE, width=2, dash="dashed")
         latin = self.add("LATIN", color=LATIN, width=2.5)
         self.add("now", "Scatter", color=ERROR, size=10)
-        self.add_flag()
+        self.flag = Flag(self, plot)
         self.legend("LATIN", "reference", "ghost", "beside", exact="closed form")
         hover(plot, [latin], {"displacement": "@x{0.000}", "force": "@y{0.000}"})
 
@@ -89,7 +90,7 @@ class HysteresisLoop(View):
         self.draw("ghost", *_ghost_of(run, ghost), self.ghost_name)
         self.draw("beside", *beside, source)
         self.draw("now", *frame.loop[:, [run.column(selection.phase)]])
-        self.show_flag(frame)
+        self.flag.show(frame)
 
 
 def _across(run: Run) -> tuple[str, str]:
@@ -191,7 +192,7 @@ class CycleEnergy(CyclePlot):
         plot = self.begin(("cycle",), ("energy", "J"))
         whole(plot.xaxis[0])
         bars = self.add("bars", "VBar", "x top color", width=0.7)
-        self.add_flag()
+        self.flag = Flag(self, plot)
         self._add_legend()
         hover(plot, [bars], {"cycle": "@x", "energy": "@top{0.000}"})
 
@@ -205,7 +206,7 @@ class CycleEnergy(CyclePlot):
         self.fill(
             "bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count)
         )
-        self.show_flag(frame)
+        self.flag.show(frame)
 
 
 class SlipPlane(View):

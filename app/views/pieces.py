@@ -16,7 +16,8 @@ from app.views.acts import gapped, hatched
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO, WRITTEN
 from app.views.parts import bare
-from app.views.view import TEXT, ExtraView
+from app.views.type_size import TEXT
+from app.views.view import ExtraView
 from app.worker.pieces import Pieces, StageFields
 from solver.arrays import Array, Indices
 from solver.files.amounts import number, unit_for
@@ -152,7 +153,7 @@ class PiecesView(ExtraView):
 
         The text stands above the pieces, or at their left if high ones are larger so.
         """
-        width, height = self._size.values()
+        width, height = self.room
         self._figure.x_range.end = width
         self._figure.y_range.end = height
         size = float(self._type.removesuffix("px"))
@@ -182,7 +183,7 @@ class PiecesView(ExtraView):
         lines = textwrap.wrap(text, self._letters)
         if len(lines) > self._rows:
             lines = textwrap.wrap(sentence, self._letters)
-        height = self._size["inner_height"]
+        height = self.room[1]
         self._told.glyph.text_color = WRITTEN[self.state.is_dark]
         self.fill("words", x=[2.0], y=[height - 2.0], text=["\n".join(lines)])
 

@@ -13,6 +13,7 @@ from bokeh.palettes import Cividis256
 from app.frame import Frame, Selection
 from app.views.axis import extent, rounded_up
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
+from app.views.flags import Flag
 from app.views.parts import color_bar, explain, hover
 from app.views.view import ExtraView, joined
 from app.worker.geometry import MOST_WIRES
@@ -126,7 +127,7 @@ class AxialForces(ExtraView):
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("stuck", color=REFERENCE, dash="dashed", width=1.5)
         self._lines = [self.add(wire, width=2) for wire in WIRES]
-        self.add_flag()
+        self.flag = Flag(self, plot)
         self.legend(*WIRES, stuck="all stick", exact="closed form")
         hover(plot, self._lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
 
@@ -148,7 +149,7 @@ class AxialForces(ExtraView):
         self.draw("stuck", x[: len(stuck)], stuck[:, column])
         self._color(names)
         self.draw_each(WIRES, x, axial["force"][:, :, column], names)
-        self.show_flag(frame)
+        self.flag.show(frame)
 
     def _color(self, names: list[str]) -> None:
         """Set colours and widths of the curves of wires."""

@@ -209,7 +209,7 @@ class Scene(View):
 
     def _layout_of(self, frame: Frame) -> Layout:
         type_size = float(self.words.removesuffix("px"))
-        width, height = self._size.values()
+        width, height = self.room
         surroundings = None
         if self.state.trade_case is not None:
             surroundings = self.state.trade_case.surroundings

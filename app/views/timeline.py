@@ -17,7 +17,8 @@ from app.views.acts import unit_of
 from app.views.colors import ERROR, FORCE, UNSEEN
 from app.views.layout import is_equal, is_opposite
 from app.views.parts import bare
-from app.views.view import LETTER, View
+from app.views.type_size import LETTER
+from app.views.view import View
 from solver.arrays import Array
 from solver.discrete.structure import Act, Description
 from solver.files.amounts import Unit, number, unit_for
@@ -126,7 +127,7 @@ class Timeline(View):
         width = 0.0
         for name in self._names:
             width += LETTER * self.type_size * len(name) + ENTRY
-        lines = max(math.ceil(width / self._size["inner_width"]), 1)
+        lines = max(math.ceil(width / self.room[0]), 1)
         self.figure.y_range.end = HIGH + ANOTHER * (lines - 1)
 
     def _resize(self, name: str, old: float, new: float) -> None:

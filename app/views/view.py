@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from itertools import zip_longest
 from typing import Any, ClassVar
 
 import numpy as np
-import panel as pn
 from bokeh import models
 from bokeh.core.properties import validate, value
 from bokeh.events import LegendItemClick
 from bokeh.models import (
     AllIndices,
-    ColorBar,
     ColumnDataSource,
     CrosshairTool,
     CustomJS,
@@ -36,54 +33,18 @@ from numpy.typing import ArrayLike
 from app.frame import Floats, Frame, Selection
 from app.state import PageState
 from app.views.axis import Axis
-from app.views.colors import CUT, FLAG, PAPER
-from app.views.flags import Place, curves_of, place_off
+from app.views.colors import CUT
+from app.views.legends import legend
 from app.views.parts import LEAST, visuals
+from app.views.type_size import FONT, TEXT, WORDS, magnify
 from solver.settings.scene import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
 SHORT = 200
 """Length of a curve up to which it is sent as a list: faster there than an array."""
-TEXT = "12px"
-WORDS = "14px"
-"""Type sizes of plots, and of words at arrows, as CSS has them."""
 WIDTH = 380.0
 HEIGHT = 160.0
 """Size of a plot until the browser reports its own, px."""
-LETTER = 0.56
-ROW = 1.3
-"""Width of a letter and height of a line of words over their type size, about."""
-TICKS = 6
-FEW_TICKS = 3
-"""Number of ticks up an axis that have room, and those in large type."""
-FONT = value("Roboto, sans-serif")
-"""The page's font, for texts that are drawn in plots."""
-KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
-"""Script that keeps sizes that are not the theme's: the browser sets those of the theme
-as it draws a figure."""
-ABOVE = {"margin-left": "-52px", "top": "-1px"}
-"""Style of a legend that begins at the left end of the figure."""
-CLOSE = """
-.bk-grid { gap: 6px 5px !important; }
-.bk-item { gap: 4px !important; }
-.bk-item .bk-label { min-width: 0 !important; }
-"""
-"""Style sheet by which a legend of seven entries stands in one line; the theme keeps
-entries farther apart."""
-FLOWING = """
-.bk-grid {
-  display: flex !important;
-  flex-wrap: wrap;
-  width: auto !important;
-  gap: 0 5px !important;
-}
-:host(.column) .bk-grid { flex-direction: column; gap: 6px !important; }
-"""
-"""Style sheet by which the entries of a legend follow each other, and take a second
-line where the first has no room; or stand below each other."""
-WRAPPED = ":host { width: calc(100% + 52px); }"
-"""Style sheet of a legend above a plot, which is as wide whatever its entries are: a
-figure is painted once more when the size of its legend changes."""
 
 
 HIDE = """
@@ -175,6 +136,11 @@ class View:
         # A figure that is out of sight reports a size of zero.
         self._size[name] = max(float(new), LEAST)
 
+    @property
+    def room(self) -> Floats:
+        """Width and height of the figure for which it is laid out, px, shape (2,)."""
+        return np.array([*self._size.values()])
+
     def hold(self, is_held: bool) -> None:
         """Hold back all painting of the figures, or resume it."""
         self.is_held = is_held
@@ -221,90 +187,6 @@ class View:
     def ghost_name(self) -> str:
         """Name of the run that is compared with the present one."""
         return "last run" if self.state.pinned is None else "pinned run"
-
-    def add_flag(self) -> None:
-        """Add the mark of the known number of a case, which `show_flag` places."""
-        self.add("level", "HSpan", "y", color=FLAG, line_dash="dashed", line_width=1.5)
-        look = {"marker": "inverted_triangle", "size": 12, "color": FLAG}
-        self.add("flag", "Scatter", "x y", **look)
-        self._flag_text = self.add(
-            "flag text",
-            "Text",
-            "x y text text_align text_baseline y_offset",
-            text_color=FLAG,
-            text_font_style="bold",
-            text_font_size=self.words,
-            # What it lies on, where no place is free, is to be read through.
-            background_fill_alpha=0.75,
-        )
-        self._flagged: Frame | None = None
-        self.follow_size(WIDTH, HEIGHT)
-        for name in self._size:
-            self._figure.on_change(name, lambda attr, old, new: self._move_flag())
-
-    def _move_flag(self) -> None:
-        """Place the name of the flag again, in a figure of another size."""
-        # Before it was shown the axes have no limits.
-        if self._flagged is not None:
-            with pn.io.hold():
-                self.show_flag(self._flagged)
-
-    def show_flag(self, frame: Frame) -> None:
-        """Mark the known number of the case if it stands in this plot."""
-        self._flagged = frame
-        case = self.state.trade_case
-        flag = None
-        if case is not None and case.knows(frame.run.settings):
-            flag = case.flag
-        if flag is None or flag.plot != self.name:
-            for name in ("level", "flag", "flag text"):
-                self.fill(name, **{key: [] for key in self.sources[name].data})
-            return
-        x = float(self.x(flag.x))
-        y = float(self.y(flag.y))
-        # Any x: a line.
-        levels = []
-        marks = [(x, y)]
-        if math.isnan(x):
-            levels = [y]
-            marks = []
-        self.fill("level", y=levels)
-        self.fill("flag", x=[at[0] for at in marks], y=[at[1] for at in marks])
-        place = self._place_of_flag(flag.text, x, y)
-        start, end = _limits(self._figure.x_range)
-        across = start + place.x / self._size["inner_width"] * (end - start)
-        self.fill(
-            "flag text",
-            x=[across],
-            y=[y],
-            text=[flag.text],
-            text_align=[place.text_align],
-            text_baseline=[place.text_baseline],
-            y_offset=[place.y_offset],
-        )
-        paper = PAPER[self.state.is_dark]
-        self._flag_text.glyph.background_fill_color = paper
-
-    def _place_of_flag(self, text: str, x: float, y: float) -> Place:
-        """Place of the name of a flag at a point in units of the axes.
-
-        At x NaN it names a line.
-        """
-        room = np.array([*self._size.values()])
-        across = _limits(self._figure.x_range)
-        up = _limits(self._figure.y_range)
-        low = np.array([across[0], up[0]])
-        at = (np.array([x, y]) - low) / ([across[1], up[1]] - low) * room
-        anchors = [(at[0], "left"), (at[0], "right"), (at[0], "center")]
-        if at[0] > 0.5 * room[0]:
-            anchors = [(at[0], "right"), (at[0], "left"), (at[0], "center")]
-        if math.isnan(x):
-            width = float(room[0])
-            anchors = [(0.0, "left"), (width, "right"), (0.5 * width, "center")]
-        letters = np.array([LETTER * len(text), ROW])
-        size = float(self.words.removesuffix("px")) * letters
-        curves = curves_of(self._figure, across, up, room)
-        return place_off(curves, anchors, float(at[1]), size, room)
 
     def begin(
         self, x: tuple[str, ...] = ("",), y: tuple[str, ...] = ("",), **more: Any
@@ -495,11 +377,6 @@ class ExtraView(View):
         raise NotImplementedError
 
 
-def _limits(axis: Range1d) -> Floats:
-    """Limits of an axis that has not been zoomed, shape (2,)."""
-    return np.array([axis.reset_start, axis.reset_end])
-
-
 def _sent(values: Any) -> Any:
     """Values with short curves as lists, as arrays need two further messages."""
     if isinstance(values, list):
@@ -530,65 +407,3 @@ def joined(curves: Iterable[ArrayLike]) -> Floats:
     if not pieces:
         return gap[:, :0]
     return np.concatenate(pieces, axis=1)
-
-
-def magnify(plot: figure, size: str, words: str) -> None:
-    """Set the type size of a figure, and that of words in it, as CSS has them."""
-    keep = CustomJS(code=KEEP)
-    # Each by itself: an em is 13 pixels to axes, whatever the style.
-    for model in (plot, *plot.legend):
-        model.styles = {**model.styles, "font-size": size}
-    # Marks of legends are as large as their words: on a projector colours are seen.
-    pixels = round(float(size.removesuffix("px")))
-    marks = dict.fromkeys(("glyph_width", "glyph_height", "label_height"), pixels)
-    for box in plot.legend:
-        box.update(tags=[marks], **marks)
-        if not box.js_property_callbacks:
-            box.js_on_change("glyph_width", keep)
-    # Bokeh's own search would go through the figure for each kind.
-    parts = plot.references()
-    for part in parts:
-        if isinstance(part, models.Text):
-            part.text_font_size = words
-    ticks = FEW_TICKS
-    if size == TEXT:
-        ticks = TICKS
-    for axis in plot.yaxis:
-        if isinstance(axis.ticker, models.ContinuousTicker):
-            axis.ticker.desired_num_ticks = ticks
-    titled = [part for part in parts if isinstance(part, Title | ColorBar)]
-    for model in (*plot.axis, *titled):
-        names = [name for name in model.properties() if name.endswith("text_font_size")]
-        sizes = dict.fromkeys(names, size)
-        tags = []
-        if size != TEXT:
-            tags = [sizes]
-        model.update(tags=tags, **sizes)
-        if not model.js_property_callbacks:
-            model.js_on_change(names[0], keep)
-
-
-def legend(plot: figure, items: Sequence[Any], place: str = "above") -> Legend:
-    """A legend in one line: above the plot, or inside."""
-    styles = {"font-size": TEXT}
-    sheets = [CLOSE, FLOWING]
-    if place == "above":
-        styles |= ABOVE
-        sheets.append(WRAPPED)
-    box = Legend(
-        items=items,
-        orientation="horizontal",
-        location="top_left",
-        padding=0,
-        margin=2,
-        label_height=12,
-        glyph_height=12,
-        glyph_width=12,
-        background_fill_alpha=0.0,
-        # The page's theme has none, but not that of a page that is saved.
-        border_line_color=None,
-        styles=styles,
-        stylesheets=sheets,
-    )
-    plot.add_layout(box, place)
-    return box

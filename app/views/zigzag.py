@@ -12,7 +12,8 @@ from bokeh.plotting import figure
 from app.frame import LINEAR, LOCAL, Floats, Frame, Selection
 from app.views.colors import ERROR, EXACT, REFERENCE, STAGES, STICK
 from app.views.parts import hover
-from app.views.view import TEXT, ExtraView
+from app.views.type_size import TEXT
+from app.views.view import ExtraView
 from solver.arrays import Array
 from solver.files.amounts import unit_for
 

@@ -7,7 +7,7 @@ from pictures import frame_of, shown, small
 
 from app.frame import Frame
 from app.views.scene import HEIGHT, WIDTH, Scene
-from app.views.view import TEXT
+from app.views.type_size import TEXT
 from solver.scenes import CATALOGUE
 
 

@@ -13,7 +13,7 @@ from app.lessons.catalogue import LESSONS
 from app.state import default_settings
 from app.views.picture import Picture
 from app.views.scene import HEIGHT, WIDTH, Scene
-from app.views.view import TEXT
+from app.views.type_size import TEXT
 
 
 def picture_of(view: Scene) -> Picture:
