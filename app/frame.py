@@ -216,13 +216,14 @@ class Frame:
     """Largest and last displacement and force of the loop in the whole run."""
     slips: Floats
     """Share of all points of surfaces that slip, shape (n_instants,)."""
+    energy: Floats
+    """Energy dissipated from the beginning up to each instant, J, shape
+    (n_instants,)."""
     history: Mapping[str, Floats]
     """Scalars of every iteration so far, by the names of `solver.latin.Record`; each of
     shape (n_iterations,)."""
     status: Status | None = None
     """Status with which the run ended; None while it continues."""
-    energy: float = float("nan")
-    """Energy dissipated in the whole interval, J."""
     residual: float | None = None
     """KKT residual of a certified solution; None for all other iterates."""
     is_followed: bool = False

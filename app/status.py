@@ -188,13 +188,11 @@ def figures_line(frame: Frame, selection: Selection) -> str:
         figures[figure.title] = figure.in_words(value)
         hints[figure.title] = _over_time(frame, figure)
     figures["Slips"] = percent(float(frame.slips[column]))
-    # Beside the work that the largest force does on the largest displacement.
-    across, up = frame.extremes
-    work = across.largest * up.largest
-    energy = settled(frame.energy, work)
-    figures["Energy dissipated"] = unit_for(abs(energy), "J")(energy)
-    for title in ("Slips", "Energy dissipated"):
-        hints[title] = MEANINGS[title]
+    hints["Slips"] = MEANINGS["Slips"]
+    energy = _energy(frame)
+    figures[energy.title] = energy.in_words(float(energy.values[column]))
+    total = energy.in_words(energy.largest)
+    hints[energy.title] = f"{MEANINGS[energy.title]} At the end: {total}."
     beside = frame.extras.get("beside")
     if beside is not None:
         figures[f"Distance to {beside['brought'].source}"] = percent(beside["distance"])
@@ -212,8 +210,8 @@ def _is_lost(frame: Frame) -> bool:
     return frame.status is not None and frame.status.lost_from is not None
 
 
-class _LoopFigure(NamedTuple):
-    """A number of the loop: values at the shown instants, and of the whole run, SI."""
+class _Figure(NamedTuple):
+    """A number over time: values at the shown instants, and of the whole run, SI."""
 
     title: str
     unit: str
@@ -237,13 +235,13 @@ class _LoopFigure(NamedTuple):
         return unit(value)
 
 
-def _of_loop(frame: Frame) -> list[_LoopFigure]:
+def _of_loop(frame: Frame) -> list[_Figure]:
     """Key figures of the loop of a frame; displacement of a held side is zero."""
     figures = []
     moved = float(np.nanmax(np.abs(frame.deformed.nodes), initial=0.0))
     axes = frame.run.across, frame.run.up
     for axis, values, extremes in zip(axes, frame.loop, frame.extremes, strict=True):
-        figure = _LoopFigure(*axis, values, extremes)
+        figure = _Figure(*axis, values, extremes)
         if figure.unit == "m" and settled(figure.largest, moved) == 0.0:
             nothing = Extremes(0.0, float(frame.run.instants[0]), 0.0)
             figure = figure._replace(values=np.zeros_like(values), extremes=nothing)
@@ -251,7 +249,18 @@ def _of_loop(frame: Frame) -> list[_LoopFigure]:
     return figures
 
 
-def _over_time(frame: Frame, figure: _LoopFigure) -> str:
+def _energy(frame: Frame) -> _Figure:
+    """Energy dissipated up to each instant; what rounding leaves is zero."""
+    across, up = frame.extremes
+    # The work that the largest force does on the largest displacement.
+    work = across.largest * up.largest
+    energy = np.array([settled(float(each), work) for each in frame.energy])
+    end = float(energy[-1])
+    extremes = Extremes(end, float(frame.run.instants[-1]), end)
+    return _Figure("Energy dissipated", "J", energy, extremes)
+
+
+def _over_time(frame: Frame, figure: _Figure) -> str:
     """Largest value of a key figure with its instant, and its last value."""
     largest, largest_at, last = figure.extremes
     when = unit_for(float(frame.run.instants[-1]), "s")(largest_at)

@@ -182,7 +182,7 @@ class Sampler:
             slips=floats(self._slips(iterate)),
             history=_scalars(history),
             status=status,
-            energy=float(run.dissipated.sum()),
+            energy=floats(np.cumsum(run.dissipated)[self.columns]),
             residual=residual,
             remarks=remarks,
             extras=self._extras(iterate, needs),

@@ -13,6 +13,7 @@ from app.status import figures_line
 from app.units import percent
 from app.worker.geometry import MOST_POINTS
 from app.worker.sampling import MOST_INSTANTS, Sampler
+from solver.files.amounts import number
 from solver.scenes import CATALOGUE
 from solver.study.quantities.finished import FinishedRun, figures_of, finished_run
 
@@ -64,6 +65,17 @@ def test_the_share_that_slips_is_of_all_points_and_not_of_those_that_are_drawn()
     assert frame.slips == pytest.approx(slips, rel=1e-6)
     line = figures_line(frame, Selection(phase=0.2))
     assert f"Slips <b>{percent(float(slips[2]))}</b>" in line
+
+
+def test_energy_dissipated_is_that_up_to_the_instant_of_its_figures() -> None:
+    run, frame = shown("bar", Needs(), instants=9)
+    heat = np.cumsum(run.dissipated)
+    assert 0.0 == heat[0] < heat[2] < heat[-1]
+    assert frame.energy == pytest.approx(heat, rel=1e-6)
+    for phase, energy in ((0.0, 0.0), (0.25, heat[2]), (1.0, heat[-1])):
+        line = figures_line(frame, Selection(phase=phase))
+        assert f"Energy dissipated <b>{number(1e3 * energy)} mJ</b>" in line
+        assert f"At the end: {number(1e3 * heat[-1])} mJ." in line
 
 
 def test_the_widest_line_of_thrust_is_the_largest_force_of_any_instant() -> None:
