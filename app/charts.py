@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 import panel as pn
 from bokeh.embed import components
-from bokeh.models import NoOverlap
+from bokeh.models import BasicTicker, LogTicker, NoOverlap, Ticker
 from bokeh.palettes import Viridis256
 from bokeh.resources import Resources
 
@@ -258,38 +258,42 @@ def edges(values: Array, axis: PanelAxis) -> Array:
     return ends
 
 
-def _ticks(axis: PanelAxis, values: Iterable[float]) -> list[Any] | None:
+def _ticks(axis: PanelAxis, values: Iterable[float]) -> list[Any] | Ticker:
     """Ticks of an axis: names, few whole numbers, or those of a short logarithmic axis.
 
-    None for round numbers.
+    Else what finds round numbers. It is never left out: a chart that fills would keep
+    the ticks that it began with.
     """
     if axis.names:
         return list(enumerate(axis.names))
     if axis.logarithmic:
         return _logarithmic_ticks(axis, values)
     if not axis.whole:
-        return None
+        return BasicTicker()
     numbers = sorted({int(value) for value in values})
     if 0 < len(numbers) <= 7:
         return numbers
-    return None
+    return BasicTicker()
 
 
 def _logarithmic_ticks(
     axis: PanelAxis, values: Iterable[float]
-) -> list[tuple[float, str]] | None:
-    """Ticks at 1, 2, 5, 10, ..., each with its text; None for more than two decades.
+) -> list[tuple[float, str]] | Ticker:
+    """Ticks at 1, 2, 5, 10, ..., each with its text.
 
-    Bokeh's own are few, or lie on one another.
+    Bokeh's own are few, or lie on one another. They are right for more than two
+    decades; between two of these ticks those of a linear axis are.
     """
     known = np.array([value for value in values if value > 0.0])
     if not known.size or known.max() > 100.0 * known.min():
-        return None
+        return LogTicker(num_minor_ticks=10)
     low, high = axis.limits or (known.min(), known.max())
     first = math.floor(math.log10(low))
     powers = 10.0 ** np.arange(first, first + 4)
     ticks = np.outer(powers, [1.0, 2.0, 5.0]).ravel()
     inside = ticks[(ticks > 0.999 * low) & (ticks < 1.001 * high)]
+    if len(inside) < 2:
+        return BasicTicker()
     return [(tick, number(tick)) for tick in inside.tolist()]
 
 

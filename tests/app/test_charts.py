@@ -11,7 +11,13 @@ from typing import Any
 import holoviews as hv
 import numpy as np
 import pytest
-from bokeh.models import ColorBar, ColumnDataSource, LogTicker
+from bokeh.models import (
+    BasicTicker,
+    ColorBar,
+    ColumnDataSource,
+    FixedTicker,
+    LogTicker,
+)
 from sweeps import tiny
 
 from app.charts import contours, in_units, keys, overlay, render
@@ -128,6 +134,34 @@ def test_a_chart_that_fills_shows_what_is_new_in_the_same_figure() -> None:
     other = replace(whole, y=replace(whole.y, unit="k"))
     pipe.send(other)
     assert figure.yaxis.axis_label == other.y.label
+
+
+@pytest.mark.parametrize(
+    ("look", "few", "many"),
+    [
+        ({"logarithmic": True}, [0.01, 0.02, 0.5], [0.01, 0.1, 4.0]),
+        ({"logarithmic": True}, [0.01, 0.02, 0.5], [3.1, 3.3, 3.9]),
+        ({"whole": True}, [1.0, 2.0, 3.0], [*range(20, 40)]),
+    ],
+)
+def test_an_axis_of_a_chart_that_fills_has_ticks_for_what_it_shows(
+    look: dict[str, Any], few: list[float], many: list[float]
+) -> None:
+    across = PanelAxis("Deflection", "m")
+
+    def panel(values: list[float]) -> Panel:
+        up = PanelAxis("Energy", "J", **look)
+        x = np.arange(len(values)) * 1.0
+        return Panel("Curves", across, up, (PanelCurve("", x, np.array(values), 1),))
+
+    pipe = hv.streams.Pipe(data=panel(few))
+    filling = hv.DynamicMap(lambda data: overlay(data), streams=[pipe])
+    figure = hv.renderer("bokeh").get_plot(filling).state
+    assert isinstance(figure.yaxis.ticker, FixedTicker)
+    pipe.send(panel(many))
+    # Tickers of these kinds follow the limits of their axis.
+    assert isinstance(figure.yaxis.ticker, LogTicker | BasicTicker)
+    assert figure.ygrid[0].ticker == figure.yaxis.ticker
 
 
 @pytest.mark.parametrize("is_logarithmic", [False, True])
