@@ -211,6 +211,13 @@ def overlay(chart: Chart) -> hv.Overlay:
         ys = np.concatenate(none + [curve.y for curve in chart.curves])
         x_limits = chart.x.limits or (None, None)
         y_limits = chart.y.limits or (None, None)
+    ticks = {"x": _ticks(chart.x, xs), "y": _ticks(chart.y, ys)}
+    # A chart that fills would keep the texts of ticks that it began with, too.
+    texts = {
+        f"{name}axis.major_label_overrides": {}
+        for name, ticker in ticks.items()
+        if isinstance(ticker, Ticker)
+    }
     # Whether axes follow a chart that fills is asked of elements, not of their overlay.
     return hv.Overlay([element.opts(framewise=True) for element in elements]).opts(
         # HoloViews takes braces for places that it fills.
@@ -221,8 +228,8 @@ def overlay(chart: Chart) -> hv.Overlay:
         ylim=tuple(y_limits),
         xlabel=textwrap.fill(chart.x.label, 2 * LABEL),
         ylabel=textwrap.fill(chart.y.label, LABEL),
-        xticks=_ticks(chart.x, xs),
-        yticks=_ticks(chart.y, ys),
+        xticks=ticks["x"],
+        yticks=ticks["y"],
         padding=(0.03, 0.1),
         responsive=True,
         height=HEIGHT,
@@ -237,6 +244,7 @@ def overlay(chart: Chart) -> hv.Overlay:
             "plot.toolbar.stylesheets": [UNPRINTED],
             "plot.toolbar_sticky": False,
             "xaxis.major_label_policy": NoOverlap(),
+            **texts,
         },
     )
 

@@ -162,6 +162,7 @@ def test_an_axis_of_a_chart_that_fills_has_ticks_for_what_it_shows(
     # Tickers of these kinds follow the limits of their axis.
     assert isinstance(figure.yaxis.ticker, LogTicker | BasicTicker)
     assert figure.ygrid[0].ticker == figure.yaxis.ticker
+    assert not figure.yaxis.major_label_overrides
 
 
 @pytest.mark.parametrize("is_logarithmic", [False, True])
