@@ -168,6 +168,8 @@ class Transport:
             end=0,
             value=0,
             show_value=False,
+            # The line above says which iteration it is.
+            tooltips=False,
             size="small",
             sizing_mode="stretch_width",
             margin=0,
