@@ -123,6 +123,7 @@ class Convergence(ErrorPlot):
         self.mark({"stage": REFERENCE}, marker="dash", angle=0.5 * np.pi)
         titles = {column: title for column, (title, *_) in CURVES.items()}
         self.legend(**titles, stage="local stage", ghost="ghost")
+        self.show("stage", False, may_come_back=False)
         hover(plot, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
         plot.on_event(Tap, self._go_back)
         self._shown: tuple[Frame, Selection, Frame | None] | None = None

@@ -69,6 +69,8 @@ class Timeline(View):
         box = self.legend(*PATHS, "time", place="center")
         mark = CustomJS(args={"legend": box}, code=MARK)
         for item in box.items:
+            # Names of paths come with a run.
+            item.visible = False
             item.js_on_change("label", mark)
             item.js_on_change("visible", mark)
         # As the range has bounds, the tool pans nothing. It only keeps a touch from

@@ -33,7 +33,7 @@ from numpy.typing import ArrayLike
 from app.frame import Floats, Frame, Selection
 from app.state import PageState
 from app.views.axis import Axis
-from app.views.colors import CUT
+from app.views.colors import CUT, UNSEEN
 from app.views.legends import legend
 from app.views.parts import LEAST, visuals
 from app.views.type_size import FONT, TEXT, WORDS, magnify
@@ -271,7 +271,7 @@ class View:
         return ColumnDataSource(columns, **self._selects)
 
     def mark(self, colors: Mapping[str, str], **look: Any) -> None:
-        """Add marks to the legend only, by name.
+        """Add marks to the legend only, by name; one without a colour waits for `show`.
 
         The marks share a glyph, as each glyph costs time.
         """
@@ -279,8 +279,10 @@ class View:
         columns = {"x": nowhere, "y": nowhere, "color": list(colors.values())}
         look = {"marker": "square", "size": 10, "color": "color"} | look
         marks = self._render(self._source(columns), Scatter(**visuals(Scatter, look)))
-        for index, name in enumerate(colors):
-            self._items[name] = LegendItem(renderers=[marks], index=index)
+        for index, (name, color) in enumerate(colors.items()):
+            is_seen = color != UNSEEN
+            item = LegendItem(renderers=[marks], index=index, visible=is_seen)
+            self._items[name] = item
 
     def legend(self, *names: str, place: str = "above", **titles: str) -> Legend:
         """Name glyphs in a legend, in this order, by their names or by titles.
@@ -300,7 +302,9 @@ class View:
         nowhere = self._source(columns)
         for name, renderer in drawn.items():
             copy = self._render(nowhere, renderer.glyph, name)
-            self._items[name] = LegendItem(renderers=[copy])
+            # Before a first frame `fill` knows no data of a glyph.
+            has_data = name not in self.sources
+            self._items[name] = LegendItem(renderers=[copy], visible=has_data)
         for name, title in titles.items():
             self._items[name].label = value(title)
         box = legend(self._figure, [self._items[name] for name in titles], place)

@@ -6,6 +6,8 @@ from pictures import frame_of, shown, small
 
 from app.frame import Selection
 from app.state import PageState, default_settings
+from app.views.errors import Convergence, ErrorTime
+from app.views.loops import HysteresisLoop
 from app.views.parts import bare, color_bar, explain
 from app.views.rope import WireSection
 from app.views.scene import Scene, Stress
@@ -22,6 +24,21 @@ def test_an_entry_that_changes_has_the_legend_of_the_time_line_painted() -> None
             (script,) = item.js_property_callbacks[f"change:{change}"]
             assert script.args == {"legend": legend}
             assert "change.emit" in script.code
+
+
+@pytest.mark.parametrize(
+    "view", [Scene, Timeline, Convergence, ErrorTime, HysteresisLoop]
+)
+def test_before_its_first_picture_a_legend_has_no_words_but_those_it_keeps(
+    view: type[View],
+) -> None:
+    # A scene that is large begins some seconds after its controls are there.
+    settings = small("block")
+    made = view(PageState(settings))
+    (legend,) = made.figure.legend
+    before = {item.label.value for item in legend.items if item.visible}
+    made.update(frame_of(settings), Selection(), None)
+    assert before <= {item.label.value for item in legend.items if item.visible}
 
 
 def test_marks_of_a_legend_are_as_large_as_its_words() -> None:
