@@ -5,10 +5,10 @@ from __future__ import annotations
 from app.views.bases import ClipErrors, SpaceModes, Spectra, TimeFunctions
 from app.views.contact_force import ContactForce
 from app.views.errors import Convergence, ErrorTime
+from app.views.inside import Stress, Thrust
 from app.views.loops import CycleEnergy, Cycles, HysteresisLoop, SlipPlane
 from app.views.pieces import PiecesView
 from app.views.rope import AxialForces, WireSection
-from app.views.scene import Stress, Thrust
 from app.views.status_map import StatusMap
 from app.views.view import View
 from app.views.zigzag import Zigzag

@@ -7,10 +7,11 @@ from pictures import frame_of, shown, small
 from app.frame import Selection
 from app.state import PageState, default_settings
 from app.views.errors import Convergence, ErrorTime
+from app.views.inside import Stress
 from app.views.loops import HysteresisLoop
 from app.views.parts import bare, color_bar, explain
 from app.views.rope import WireSection
-from app.views.scene import Scene, Stress
+from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.views.view import View
 

@@ -16,9 +16,10 @@ from app.state import PageState, answer, default_settings
 from app.status import status_line
 from app.views.colors import HALO
 from app.views.contact_force import ContactForce
+from app.views.inside import WIDEST, Stress, Thrust
 from app.views.picture import bands
 from app.views.rope import WireSection
-from app.views.scene import HEIGHT, WIDEST, WIDTH, Scene, Stress, Thrust
+from app.views.scene import HEIGHT, WIDTH, Scene
 from app.views.status_map import StatusMap
 from app.views.timeline import Timeline, paths_of
 from app.worker.references import ReferenceCache

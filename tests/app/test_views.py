@@ -36,10 +36,11 @@ from app.views.bases import Spectra
 from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
 from app.views.errors import Convergence
+from app.views.inside import Stress
 from app.views.loops import HysteresisLoop
 from app.views.pieces import PiecesView
 from app.views.rope import AxialForces
-from app.views.scene import Scene, Stress
+from app.views.scene import Scene
 from app.views.status_map import StatusMap
 from app.views.timeline import Timeline
 from app.views.view import View
