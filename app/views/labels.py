@@ -12,11 +12,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from app.views.acts import Arrows, anchor_of, color_of, ground_edge, text_of
+from app.views.acts import Arrows, anchor_of, color_of, text_of
 from app.views.colors import FORCE, REFERENCE
 from app.views.colors import GROUND as GROUND_COLOR
 from app.views.layout import EACH, FOOTING, GROUND, is_opposite
 from app.views.picture import Columns, Picture
+from app.views.supports import ground_edge
 from app.views.words import (
     Word,
     around,

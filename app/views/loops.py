@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from app.frame import Floats, Frame, Run, Selection
-from app.views.acts import gapped
 from app.views.axis import PERCENT, whole
 from app.views.colors import (
     BESIDE,
@@ -24,7 +23,7 @@ from app.views.colors import (
     scaled,
 )
 from app.views.flags import Flag
-from app.views.parts import hover
+from app.views.parts import gapped, hover
 from app.views.view import ExtraView, View
 from app.worker.cells import thinned
 from solver.arrays import Array

@@ -1,4 +1,4 @@
-"""Parts of figures: bare figures, colour bars, tips, and the looks of glyphs."""
+"""Parts of figures: bare figures, colour bars, tips, lines, and looks of glyphs."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
 import panel as pn
 from bokeh.models import (
     ColorBar,
@@ -19,6 +20,8 @@ from bokeh.models import (
     Spacer,
 )
 from bokeh.plotting import figure
+
+from solver.arrays import Array
 
 LEAST = 60.0
 """Least width and height for which a figure is laid out, px: one that is out of sight
@@ -143,3 +146,9 @@ def come_last(panes: Sequence[pn.pane.Bokeh], document: Any) -> Iterator[None]:
         yield
         for room, elements in zip(rooms, figures, strict=True):
             room.elements = elements
+
+
+def gapped(lines: Array) -> Array:
+    """Join lines, shape (n, k, 2), with NaN after each, shape (n (k + 1), 2)."""
+    gaps = np.full((len(lines), 1, 2), np.nan)
+    return np.concatenate([lines, gaps], axis=1).reshape(-1, 2)

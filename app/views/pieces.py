@@ -12,10 +12,9 @@ from bokeh.core.properties import value
 from bokeh.events import Tap
 
 from app.frame import LINEAR, LOCAL, Frame, Selection
-from app.views.acts import gapped
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO, WRITTEN
-from app.views.parts import bare
+from app.views.parts import bare, gapped
 from app.views.placed_pieces import PlacedPieces, fitting
 from app.views.type_size import TEXT
 from app.views.view import ExtraView

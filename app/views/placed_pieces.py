@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.views.acts import hatched
+from app.views.supports import hatched
 from app.worker.pieces import Pieces, StageFields
 from solver.arrays import Array, Indices
 

@@ -1,4 +1,4 @@
-"""The figure of the scene, in which the pointer drags and selects; stress; thrust."""
+"""The figure of the scene, in which the pointer drags and selects."""
 
 from __future__ import annotations
 

@@ -20,9 +20,9 @@ from app.lessons.catalogue import CASES
 from app.messages import Needs
 from app.state import PageState, default_settings
 from app.status import figures_line
-from app.views.acts import hatched
 from app.views.inside import Thrust
 from app.views.scene import Scene
+from app.views.supports import hatched
 from app.views.timeline import paths_of
 from app.worker.cells import (
     BAND,
