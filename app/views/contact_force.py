@@ -23,8 +23,8 @@ from app.views.colors import (
     PRESSURE,
     REFERENCE,
 )
-from app.views.parts import hover
-from app.views.view import View, joined
+from app.views.parts import hover, joined
+from app.views.view import View
 from solver.reference.closed_forms import ExactCurve
 from solver.study.comparison import FRICTION, OtherResults
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -20,6 +20,7 @@ from bokeh.models import (
     Spacer,
 )
 from bokeh.plotting import figure
+from numpy.typing import ArrayLike
 
 from solver.arrays import Array
 
@@ -152,3 +153,16 @@ def gapped(lines: Array) -> Array:
     """Join lines, shape (n, k, 2), with NaN after each, shape (n (k + 1), 2)."""
     gaps = np.full((len(lines), 1, 2), np.nan)
     return np.concatenate([lines, gaps], axis=1).reshape(-1, 2)
+
+
+def joined(curves: Iterable[ArrayLike]) -> Array:
+    """Join curves, shape (2, n) each, with NaN in between, shape (2, n_all)."""
+    gap = np.full((2, 1), np.nan)
+    pieces: list[Array] = []
+    for curve in curves:
+        if pieces:
+            pieces.append(gap)
+        pieces.append(np.asarray(curve))
+    if not pieces:
+        return gap[:, :0]
+    return np.concatenate(pieces, axis=1)

@@ -14,8 +14,8 @@ from app.frame import Frame, Selection
 from app.views.axis import extent, rounded_up
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
 from app.views.flags import Flag
-from app.views.parts import color_bar, explain, hover
-from app.views.view import ExtraView, joined
+from app.views.parts import color_bar, explain, hover, joined
+from app.views.view import ExtraView
 from app.worker.geometry import MOST_WIRES
 from solver.files.amounts import unit_for
 

@@ -19,8 +19,8 @@ from app.frame import (
 from app.views.axis import edges, even_cells
 from app.views.colors import CUT, ERROR, EXACT, GHOST, KEYS, STATUS
 from app.views.flags import Flag
-from app.views.parts import hover
-from app.views.view import View, joined
+from app.views.parts import hover, joined
+from app.views.view import View
 
 
 class StatusMap(View):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from itertools import zip_longest
 from typing import Any, ClassVar
@@ -398,16 +398,3 @@ def _equal(old: Any, new: Any) -> bool:
     if isinstance(new, list):
         return len(old) == len(new) and all(map(_equal, old, new))
     return bool(old == new or (old != old and new != new))
-
-
-def joined(curves: Iterable[ArrayLike]) -> Floats:
-    """Join curves, shape (2, n) each, with NaN in between, shape (2, n_all)."""
-    gap = np.full((2, 1), np.nan)
-    pieces: list[Floats] = []
-    for curve in curves:
-        if pieces:
-            pieces.append(gap)
-        pieces.append(np.asarray(curve))
-    if not pieces:
-        return gap[:, :0]
-    return np.concatenate(pieces, axis=1)
