@@ -11,15 +11,14 @@ import panel_material_ui as pmui
 from app.charts import LiveChart
 from app.experiments.jobs import SETTINGS, Job, Sweep, follow
 from app.experiments.questions import (
-    FIELD,
     READY,
     TENTH,
     TEXTS,
     Question,
-    SettingRange,
     quantities,
     question_of,
 )
+from app.experiments.setting_range import FIELD, SettingRange
 from app.refusals import advice_in_titles, message_of
 from app.state import WHAT_IF, PageState, answer
 from app.widgets import PlainText, button, download, up_to

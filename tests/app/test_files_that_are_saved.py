@@ -22,16 +22,14 @@ from pictures import boxes_of_words
 from small_scenes import SMALL as SMALLEST
 
 from app.files.export import (
-    NARROWEST,
-    _copies,
     contact_table,
     history_table,
     offers,
-    offline_page,
     path_table,
     plot_table,
     program,
 )
+from app.files.offline_page import NARROWEST, _copies, offline_page
 from app.files.tables import table_of
 from app.frame import Frame, Selection
 from app.messages import TABLE, Needs, Start
