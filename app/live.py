@@ -11,7 +11,7 @@ import panel as pn
 import panel_material_ui as pmui
 from panel.models import HTML
 
-from app.browser import Display
+from app.display import Display
 from app.messages import TABLE
 from app.state import TABS, PageState
 from app.status import figures_line, status_line

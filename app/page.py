@@ -9,10 +9,11 @@ import panel_material_ui as pmui
 from panel.io.resources import LOCAL_DIST
 from panel.util import edit_readonly
 
-from app.browser import AtOnce, Browser, linked_to
+from app.browser import AtOnce, Browser
 from app.class_dialog import ClassDialog
 from app.classroom import ClassMember, begin_with_class
 from app.controls import Controls
+from app.echoes import linked_to
 from app.experiments.fit import FitTab
 from app.experiments.reports import Reports
 from app.experiments.whatif import WhatIf

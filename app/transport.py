@@ -9,7 +9,7 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from app.browser import Echoes, linked, linked_to
+from app.echoes import Echoes, linked, linked_to
 from app.frame import Selection
 from app.server import PAGES
 from app.state import PACES, SEARCH, PageState, answering

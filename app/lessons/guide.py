@@ -12,7 +12,6 @@ import panel_material_ui as pmui
 import param
 
 from app.browser import fade_first
-from app.controls import SettingControl
 from app.frame import Selection
 from app.lessons.cases import formula_of, gallery, texts_of
 from app.lessons.catalogue import (
@@ -29,6 +28,7 @@ from app.lessons.catalogue import (
 from app.lessons.choices import WITHOUT, Choices, text_button
 from app.lessons.curve import DrawnCurve
 from app.lessons.handout import handout
+from app.setting_control import SettingControl
 from app.state import PageState
 from app.transport import Transport
 from app.views.type_size import TEXT

@@ -9,14 +9,7 @@ import numpy as np
 
 from app.units import settled
 from app.views.colors import DISPLACEMENT, FORCE
-from app.views.layout import (
-    LONGEST,
-    WORD,
-    Layout,
-    beside,
-    is_aside,
-    is_at_left,
-)
+from app.views.layout import LONGEST, WORD, Layout, beside, is_aside, is_at_left
 from app.views.parts import gapped
 from app.views.supports import RADIUS
 from app.views.words import half_of_line

@@ -4,14 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.frame import (
-    Floats,
-    Frame,
-    FrictionInterface,
-    InterfaceFields,
-    Run,
-    Selection,
-)
+from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run, Selection
 from app.views.axis import extent
 from app.views.colors import (
     BESIDE,

@@ -12,16 +12,7 @@ from bokeh.plotting import figure
 
 from app.frame import LINEAR, LOCAL, Frame, Run, Selection
 from app.views.acts import Arrows, Rest
-from app.views.colors import (
-    BODY,
-    EDGE,
-    FORCE,
-    GHOST,
-    GROUND,
-    HINT,
-    KEYS,
-    UNSEEN,
-)
+from app.views.colors import BODY, EDGE, FORCE, GHOST, GROUND, HINT, KEYS, UNSEEN
 from app.views.hints import NONE, hints_of
 from app.views.labels import labels_of
 from app.views.layout import Layout, layout_of

@@ -8,14 +8,7 @@ import numpy as np
 from bokeh.events import Tap
 from bokeh.models import LinearColorMapper
 
-from app.frame import (
-    Floats,
-    Frame,
-    FrictionInterface,
-    InterfaceFields,
-    Run,
-    Selection,
-)
+from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run, Selection
 from app.views.axis import edges, even_cells
 from app.views.colors import CUT, ERROR, EXACT, GHOST, KEYS, STATUS
 from app.views.flags import Flag

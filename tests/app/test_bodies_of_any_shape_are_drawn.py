@@ -24,13 +24,7 @@ from app.views.inside import Thrust
 from app.views.scene import Scene
 from app.views.supports import hatched
 from app.views.timeline import paths_of
-from app.worker.cells import (
-    BAND,
-    MOST_CELLS,
-    Drawing,
-    drawings_of,
-    joined,
-)
+from app.worker.cells import BAND, MOST_CELLS, Drawing, drawings_of, joined
 from solver.discrete import Bodies, Body, Held, Lattice, Mesh, discretise
 from solver.scenes import CATALOGUE
 from solver.settings.scene import Settings

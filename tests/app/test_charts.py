@@ -11,13 +11,7 @@ from typing import Any
 import holoviews as hv
 import numpy as np
 import pytest
-from bokeh.models import (
-    BasicTicker,
-    ColorBar,
-    ColumnDataSource,
-    FixedTicker,
-    LogTicker,
-)
+from bokeh.models import BasicTicker, ColorBar, ColumnDataSource, FixedTicker, LogTicker
 from sweeps import tiny
 
 from app.charts import contours, in_units, keys, overlay, render

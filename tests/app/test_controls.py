@@ -13,10 +13,11 @@ import param
 import pytest
 from panel.models.esm import ReactComponent
 
-from app.controls import FILES, POINTS, Controls, SettingControl, _groups_of
+from app.controls import FILES, Controls, _groups_of
 from app.files.points import CurveDialog
 from app.messages import Start
 from app.refusals import advice_in_titles
+from app.setting_control import POINTS, SettingControl
 from app.state import PageState, default_settings
 from app.units import unit_of
 from solver.files.amounts import Unit

@@ -5,8 +5,9 @@ from __future__ import annotations
 import panel_material_ui as pmui
 import pytest
 
-from app.browser import linked_to
-from app.controls import Controls, SettingControl
+from app.controls import Controls
+from app.echoes import linked_to
+from app.setting_control import SettingControl
 from app.state import TABS, PageState, default_settings
 
 

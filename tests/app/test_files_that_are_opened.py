@@ -6,8 +6,8 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from app.controls import OWN, SettingControl
 from app.files.opener import TableOpener
+from app.setting_control import OWN, SettingControl
 from app.state import PageState, default_settings
 from solver.files.disk import LARGEST
 from solver.files.saved import dump

@@ -13,8 +13,8 @@ from weakref import WeakSet
 import numpy as np
 import pytest
 
-import app.browser
-from app.browser import Display
+import app.display
+from app.display import Display
 from app.frame import Frame
 from app.history import History
 from app.messages import Earlier, Needs, NewFrame, Ready, Show, Start, Step
@@ -161,7 +161,7 @@ def test_a_picture_whose_answer_got_lost_is_asked_for_again(
     assert display.pulse.sent == sent
     # A message that may have another one go, which waits for it.
     assert display.pulse.looks == 1
-    monkeypatch.setattr(app.browser, "LOST", 0.0)
+    monkeypatch.setattr(app.display, "LOST", 0.0)
     display.catch_up()
     assert display.pulse.sent == sent + 1
     display.pulse.painted = display.pulse.sent
@@ -177,9 +177,9 @@ def test_of_many_pages_each_leaves_the_others_time(
     document = SimpleNamespace(add_timeout_callback=lambda *call: later.append(call))
     state = PageState(answer.run.settings)
     display = Display(state, document, lambda: None)
-    monkeypatch.setattr("app.browser.time.thread_time", itertools.count().__next__)
-    monkeypatch.setattr(app.browser.PAGES, "count", 31)
-    monkeypatch.setattr(app.browser.PAGES, "opening", WeakSet())
+    monkeypatch.setattr("app.display.time.thread_time", itertools.count().__next__)
+    monkeypatch.setattr(app.display.PAGES, "count", 31)
+    monkeypatch.setattr(app.display.PAGES, "opening", WeakSet())
     state.frame = answer
     state.frame = replace(answer)
     sent = display.pulse.sent
@@ -192,7 +192,7 @@ def test_of_many_pages_each_leaves_the_others_time(
     # More while they are made.
     others = [PageState(answer.run.settings) for _ in range(10)]
     for other in others:
-        app.browser.PAGES.opening.add(other)
+        app.display.PAGES.opening.add(other)
     display.pulse.painted = display.pulse.sent
     state.frame = answer
     ((_, later_on),) = later[1:]
@@ -206,7 +206,7 @@ def test_a_worker_makes_one_frame_ahead_and_none_for_a_page_that_is_hidden(
     assert orders == [Ready()]
     state.frame = replace(answer)
     assert orders == [Ready()]
-    monkeypatch.setattr(app.browser, "LOST", 0.0)
+    monkeypatch.setattr(app.display, "LOST", 0.0)
     display.catch_up()
     assert display.pulse.sent == 2
     assert orders == [Ready()]

@@ -17,16 +17,7 @@ from bokeh.events import Tap
 from bokeh.models import DataRange1d, LogScale
 from bokeh.settings import settings
 from frames import frame_of
-from views import (
-    MORE,
-    SMALL,
-    VIEWS,
-    frames_of,
-    other_run,
-    settings_of,
-    shown,
-    view_of,
-)
+from views import MORE, SMALL, VIEWS, frames_of, other_run, settings_of, shown, view_of
 
 from app.frame import Frame, Selection
 from app.live import Card

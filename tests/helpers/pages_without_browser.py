@@ -94,7 +94,7 @@ class Visitor:
             await self._send("PULL-DOC-REQ", {})
         elif header["msgtype"] == "PULL-DOC-REPLY":
             found = re.search(
-                r'"app.browser.Pulse","id":"(\w+)"', content.replace(" ", "")
+                r'"app.display.Pulse","id":"(\w+)"', content.replace(" ", "")
             )
             assert found is not None
             self._pulse = found[1]
