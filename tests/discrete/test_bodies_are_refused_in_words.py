@@ -19,6 +19,7 @@ UP = np.tile([0.0, 1.0], (3, 1))
 LOWER = Body("lower", QUAD, 1e9, 0.2)
 UPPER = Body("upper", QUAD, 1e9, 0.2, origin=np.array([0.0, 1.0]))
 JOINT = Joint("bed", 1, QUAD.along([0, 1]), 0, QUAD.along([3, 2]), UP, 0.0, 0.5)
+TURNED = Joint("turned", 0, QUAD.along([2, 3]), 1, QUAD.along([1, 0]), -UP, 0.0, 0.5)
 FOOT = Held("foot", 0, QUAD.along([0, 1]), 1, np.zeros(3))
 PULL = Load.of_traction("pull", 1, UPPER, QUAD.along([3, 2]), np.ones((2, 3)))
 
@@ -85,6 +86,10 @@ WRONG = {
     "normal 0 out of Body 'upper'": lambda: bodies(
         joints=(replace(JOINT, normals=-UP),)
     ),
+    "the pairs of nodes of Joint 'bed'": lambda: bodies(
+        joints=(JOINT, replace(JOINT, name="again", friction=0.2))
+    ),
+    "pairs that touch in one joint only": lambda: bodies(joints=(JOINT, TURNED)),
     "Held 'foot'.nodes = 9": lambda: bodies(held=(replace(FOOT, nodes=np.array([9])),)),
     "Held 'foot'.axis = 2": lambda: bodies(held=(replace(FOOT, axis=2),)),
     "Held 'foot'.displacement = of shape [4]": lambda: bodies(

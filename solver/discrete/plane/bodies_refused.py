@@ -156,7 +156,7 @@ def check_pairs(
     pairs: NodePairs,
     nodes: Array,
 ) -> None:
-    """Refuse normals of other lengths or directions, and pairs beyond their gap.
+    """Refuse wrong normals, pairs beyond their gap, and joints that come twice.
 
     `rotations` are those of all bodies, (n_bodies, 2, 2), `kinds` those of the joints
     (`kinds_of`), `nodes` the positions of all nodes, (n_nodes, 2), m.
@@ -169,6 +169,7 @@ def check_pairs(
     _check_lengths(joints, pairs)
     _check_directions(bodies, rotations, joints, kinds, pairs)
     _check_opposite(joints, pairs, nodes)
+    _check_once(joints, pairs)
 
 
 def _check_lengths(joints: Sequence[Joint], pairs: NodePairs) -> None:
@@ -239,6 +240,29 @@ def _check_opposite(joints: Sequence[Joint], pairs: NodePairs, nodes: Array) -> 
             f"nodes that face each other, up to the gap and {APART:g} of a step",
             "list both chains in the same order, and mesh both bodies alike there",
         )
+
+
+def _check_once(joints: Sequence[Joint], pairs: NodePairs) -> None:
+    """Refuse a joint with the very pairs, and the direction, of another one.
+
+    Two joints would share the force of one contact in any proportion. They may share
+    the node at which one ends and the other begins.
+    """
+    both = np.sort(np.stack([pairs.above, pairs.below], axis=1), axis=1)
+    known = dict[bytes, tuple[Joint, Array]]()
+    for number, joint in enumerate(joints):
+        own = slice(pairs.first[number], pairs.first[number + 1])
+        order = np.lexsort(both[own].T)
+        normals = pairs.normals[own][order]
+        other = known.setdefault(both[own][order].tobytes(), (joint, normals))
+        is_along = np.abs((normals * other[1]).sum(axis=1)) > 0.5
+        if other[0] is not joint and is_along.any():
+            raise RefusedError(
+                f"{joint}.nodes",
+                Words(f"the pairs of nodes of {other[0]}"),
+                "pairs that touch in one joint only",
+                "take one of the two joints away",
+            )
 
 
 def _first(
