@@ -24,6 +24,7 @@ from app.charts import library
 from app.frame import OPEN, Frame, Run, Selection
 from app.state import PageState
 from app.status import figures_line, status_line
+from app.templates import TEMPLATES
 from app.units import unit_of
 from app.views.layout import shape_of
 from app.views.pieces import PiecesView
@@ -31,7 +32,7 @@ from app.views.scene import Scene
 from app.views.status_map import StatusMap
 from app.views.timeline import Timeline, given_in
 from app.views.view import TEXT, View
-from app.widgets import TEMPLATES, download, up_to
+from app.widgets import download, up_to
 from app.worker.cells import thinned
 from app.worker.references import has_reference
 from solver.files.amounts import unit_for
