@@ -17,8 +17,8 @@ from bokeh.models import BasicTicker, LogTicker, NoOverlap, Ticker
 from bokeh.palettes import Viridis256
 from bokeh.resources import Resources
 
+from app.templates import html
 from app.views.colors import REFERENCE
-from app.widgets import html
 from solver.arrays import Array
 from solver.files.amounts import number, unit_for
 from solver.study.page import (

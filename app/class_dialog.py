@@ -11,7 +11,8 @@ import segno
 
 from app.classroom import ClassMember, find, no_class
 from app.server import address_for_others, port
-from app.widgets import PlainText, button, dialog, html
+from app.templates import html
+from app.widgets import PlainText, button, dialog
 
 
 class ClassDialog:

@@ -15,6 +15,7 @@ from app.display import Display
 from app.messages import TABLE
 from app.state import TABS, PageState
 from app.status import figures_line, status_line
+from app.templates import html
 from app.transport import Transport
 from app.views.catalogue import CARDS, LARGE_CARDS
 from app.views.layout import shape_of
@@ -23,7 +24,7 @@ from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.views.type_size import TEXT
 from app.views.view import View
-from app.widgets import MEANINGS, PlainText, html, looks, wrapped
+from app.widgets import MEANINGS, PlainText, looks, wrapped
 
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
 LARGE = 0.026

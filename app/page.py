@@ -25,8 +25,9 @@ from app.server import PAGES
 from app.state import TABS, WHAT_IF, PageState
 from app.status import spoken_status
 from app.supervisor import Supervisor
+from app.templates import html
 from app.transport import TOUCHED
-from app.widgets import GLOSSARY, PlainText, button, dialog, html, looks, wrapped
+from app.widgets import GLOSSARY, PlainText, button, dialog, looks, wrapped
 
 NO_SLIDING = {"transition": "none"}
 """Look of what takes its size at once as the controls open and close: figures would be

@@ -10,8 +10,9 @@ import numpy as np
 from app.frame import LOCAL, Extremes, Floats, Frame, Selection
 from app.refusals import advice_in_titles
 from app.state import PageState
+from app.templates import html
 from app.units import percent, settled
-from app.widgets import MEANINGS, explained, html
+from app.widgets import MEANINGS, explained
 from solver.files.amounts import number, unit_for
 from solver.latin import Ending
 

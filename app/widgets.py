@@ -17,12 +17,9 @@ import panel_material_ui as pmui
 import param
 from markupsafe import Markup
 
-from solver.files.templates import templates_in
+from app.templates import html
 from solver.settings.scene import Icon
 
-TEMPLATES = templates_in(Path(__file__).parent)
-"""Templates of HTML: each is next to its module, and is named by its path from
-here."""
 SHEET = (Path(__file__).parents[1] / "static" / "widgets.css").read_text(
     encoding="utf-8"
 )
@@ -64,11 +61,6 @@ def rebuilt() -> Iterator[None]:
         else:
             with document.models.freeze():
                 yield
-
-
-def html(template: str, **values: Any) -> str:
-    """HTML of a template with escaped values."""
-    return TEMPLATES.get_template(template).render(values)
 
 
 def explained(text: str, *terms: str) -> Markup:

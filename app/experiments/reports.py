@@ -12,7 +12,8 @@ import panel_material_ui as pmui
 from app.experiments.jobs import OUT, SETTINGS, Job, follow
 from app.experiments.questions import TEXTS
 from app.state import PageState
-from app.widgets import PlainText, button, download, html, looks, wrapped
+from app.templates import html
+from app.widgets import PlainText, button, download, looks, wrapped
 from solver.files.saved import dump
 from solver.study.proof import PAGE
 

@@ -19,13 +19,13 @@ from app.charts import library
 from app.frame import Run, Selection
 from app.state import PageState
 from app.status import figures_line, status_line
+from app.templates import TEMPLATES
 from app.units import unit_of
 from app.views.layout import shape_of
 from app.views.pieces import PiecesView
 from app.views.scene import Scene
 from app.views.type_size import TEXT
 from app.views.view import View
-from app.widgets import TEMPLATES
 from app.worker.cells import thinned
 from solver.files.amounts import unit_for
 from solver.files.saved import dump

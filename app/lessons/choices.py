@@ -8,7 +8,8 @@ from functools import partial
 import panel as pn
 
 from app.state import PageState, Poll
-from app.widgets import button, html, looks
+from app.templates import html
+from app.widgets import button, looks
 from solver.study.lessons import Lesson
 
 WITHOUT = -1

@@ -15,9 +15,9 @@ from app.lessons.catalogue import filled, kinds_of, without_controls
 from app.lessons.curve import DrawnCurve
 from app.server import address_for_others
 from app.state import PageState
+from app.templates import TEMPLATES
 from app.views.scene import Scene
 from app.views.view import View
-from app.widgets import TEMPLATES
 from solver.study.lessons import Lesson
 
 WIDTH = 660

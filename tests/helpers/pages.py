@@ -17,6 +17,8 @@ ENDLESS = (
 ANSWER = "start=nested&finish=at-once&pace=fastest&instant=0.75"
 """In an address: a run whose answer is there at once, and after it searches, as those
 of lessons and cases, with as few pictures as there can be, where a new page looks."""
+PHONE = {"width": 390, "height": 844, "has_touch": True, "is_mobile": True}
+"""Window of a page on a phone."""
 IGNORED = re.compile(
     "GL Driver Message|Failed to repull session"
     "|WebSocket connection to .* failed|Failed to connect to Bokeh server: Could not "
@@ -116,12 +118,18 @@ class Desk:
     """
 
     def __init__(
-        self, server: Server, chrome: Chrome, query: str = f"?{ANSWER}", root: str = ""
+        self,
+        server: Server,
+        chrome: Chrome,
+        query: str = f"?{ANSWER}",
+        root: str = "",
+        **device: Any,
     ) -> None:
         self._server = server
         self._chrome = chrome
         self._query = query
         self._root = root
+        self._device = device
         self._opened = ExitStack()
         self._page: Page | None = None
         self._complaints: list[str] = []
@@ -145,7 +153,7 @@ class Desk:
         visit = self._opened.enter_context(
             visits(self._server, self._chrome, self._complaints)
         )
-        self._page = visit(query, root=self._root)
+        self._page = visit(query, root=self._root, **self._device)
         return self._page
 
     def arrive(self) -> None:

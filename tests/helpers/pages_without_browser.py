@@ -34,6 +34,19 @@ READY = {
 }
 
 
+async def connected(address: str) -> tuple[str, WebSocketClientConnection]:
+    """HTML of a page, and a websocket to its session."""
+    client = AsyncHTTPClient(force_instance=True)
+    answer = await client.fetch(address, **PATIENT)
+    html = answer.body.decode()
+    token = re.search(r'"token":\s*"([^"]+)"', html)
+    assert token is not None
+    place = address.partition("?")[0].replace("http", "ws") + "/ws"
+    headers = {"Sec-WebSocket-Protocol": f"bokeh, {token[1]}"}
+    request = HTTPRequest(place, headers=headers, **PATIENT)
+    return html, await websocket_connect(request)
+
+
 class Visitor:
     """A page as a browser has it, but for what is seen of it.
 
@@ -49,20 +62,14 @@ class Visitor:
         self.pictures: list[float] = []
         self.button: str | None = None
         self._label = f'"label":{json.dumps(label)}'
+        self._socket: WebSocketClientConnection
         self._pulse: str | None = None
         self._count = 0
         self._whole = asyncio.Lock()
 
     async def open(self, address: str) -> None:
         """Open a page, and go on saying what is painted."""
-        client = AsyncHTTPClient(force_instance=True)
-        answer = await client.fetch(address, **PATIENT)
-        token = re.search(r'"token":\s*"([^"]+)"', answer.body.decode())
-        assert token is not None
-        place = address.partition("?")[0].replace("http", "ws") + "/ws"
-        headers = {"Sec-WebSocket-Protocol": f"bokeh, {token[1]}"}
-        request = HTTPRequest(place, headers=headers, **PATIENT)
-        self._socket: WebSocketClientConnection = await websocket_connect(request)
+        _, self._socket = await connected(address)
         # What is to be said to a page that was closed meanwhile is not.
         with contextlib.suppress(WebSocketClosedError):
             while True:

@@ -1,16 +1,31 @@
-"""A page that stays open from one journey to the next."""
+"""Pages that stay open from one journey to the next: one at a desk, and a phone."""
 
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
 from contextlib import closing
+from urllib.parse import quote
 
 import pytest
 from browser import Chrome, Server
-from pages import Desk
+from markup import MARKUP
+from pages import ANSWER, PHONE, Desk
 from playwright.sync_api import Page
 from proxy import Proxy
 
+PLACES = (
+    "class",
+    "scene",
+    "lesson",
+    "case",
+    "tab",
+    "question",
+    "plots",
+    "file",
+    "displacement",
+    MARKUP,
+)
+"""Parts of an address that a text may be given for."""
 FAILED = pytest.StashKey[bool]()
 """Key of whether a part of a test has failed."""
 
@@ -23,6 +38,19 @@ def desk(server: Server, chrome: Chrome, proxy: Proxy) -> Iterator[Desk]:
     """
     root = f"http://localhost:{proxy.port}"
     with closing(Desk(server, chrome, root=root)) as made:
+        yield made
+
+
+@pytest.fixture(scope="package")
+def stranger(chrome: Chrome, server: Server) -> Iterator[Desk]:
+    """A page on a phone in the dark that is opened by a foolish address, once.
+
+    The journey that needs no page any more after it closes it.
+    """
+    text = quote(MARKUP, safe="")
+    said = "&".join(f"{quote(place, safe='')}={text}" for place in PLACES)
+    query = f"?friction=-1&moon=3&{ANSWER}&theme=dark&{said}"
+    with closing(Desk(server, chrome, query, **PHONE)) as made:
         yield made
 
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
 import pytest
 from accessibility import COLOURS, all_can_use
-from browser import Chrome, Server
+from markup import watched
 from pages import (
     ANSWER,
     MODEL,
+    PHONE,
+    Desk,
     button,
     close_dialog,
     comes,
+    enter,
     field,
     figure,
     figures,
@@ -21,12 +23,9 @@ from pages import (
     is_solved,
     slider,
     status,
-    visits,
 )
 from playwright.sync_api import Page, expect
 
-WIDTH = 390
-HEIGHT = 844
 DARK = "rgb(18, 18, 18)"
 DARK_TAB = "rgb(144, 202, 249)"
 BACKGROUND = "getComputedStyle(document.body).backgroundColor"
@@ -59,13 +58,31 @@ def test_axe_finds_nothing_that_some_cannot_use_in_light_and_dark(page: Page) ->
     comes(page, f"(light) => {BACKGROUND} === light", light)
 
 
-@pytest.fixture(scope="module")
-def phone(chrome: Chrome, server: Server) -> Iterator[Page]:
-    """A page on a phone in the dark that is opened once."""
-    with visits(server, chrome) as visit:
-        yield visit(
-            f"?{ANSWER}&theme=dark", WIDTH, HEIGHT, has_touch=True, is_mobile=True
-        )
+@pytest.fixture
+def phone(stranger: Desk) -> Page:
+    """A page on a phone in the dark."""
+    return stranger.page()
+
+
+def test_what_a_foolish_address_has_is_said_on_its_page_and_nothing_of_it_runs(
+    stranger: Desk,
+) -> None:
+    # Only of a page that has just been opened.
+    stranger.close()
+    page = stranger.page()
+    line = page.locator(".status")
+    with watched(page):
+        expect(line).to_contain_text("From the address: ")
+        expect(line).to_contain_text("cannot be −1")
+        expect(line).to_contain_text("moon: there is no such setting")
+        expect(line).to_contain_text("there is no scene <img")
+        expect(page.get_by_text("There is no class <img").first).to_be_visible()
+        is_solved(page)
+    # What a person does next is all that is said.
+    button(page, "Open drawer").click()
+    enter(page, "Peak load", "1000", over="900")
+    expect(line).not_to_contain_text("From the address: ")
+    button(page, "Close drawer").click()
 
 
 def swipe(page: Page, start: Place, end: Place) -> None:
@@ -87,8 +104,9 @@ def swipe(page: Page, start: Place, end: Place) -> None:
 def test_a_finger_drags_a_handle_of_the_picture_and_else_scrolls_the_page(
     phone: Page,
 ) -> None:
-    is_solved(phone)
+    go(phone, f"?{ANSWER}")
     expect(figures(phone)).to_contain_text("Force −900 N")
+    is_solved(phone)
     picture = figure(phone, 0)
     box = picture.bounding_box()
     assert box is not None
@@ -114,11 +132,11 @@ def test_on_a_phone_in_the_dark_nothing_is_wider_than_the_screen_and_the_scene_i
     is_solved(page)
     page.locator(".status").scroll_into_view_if_needed()
     assert page.evaluate(BACKGROUND) == DARK
-    assert page.evaluate("document.documentElement.scrollWidth") <= WIDTH
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
     box = figure(page, 0).bounding_box()
     assert box is not None
-    assert box["width"] > 0.85 * WIDTH
-    assert box["y"] + box["height"] < HEIGHT
+    assert box["width"] > 0.85 * PHONE["width"]
+    assert box["y"] + box["height"] < PHONE["height"]
     # Nothing lies over it, neither when the controls are opened.
     figure(page, 0).click(trial=True)
     button(page, "Open drawer").click()

@@ -7,14 +7,10 @@ import re
 import signal
 import time
 import urllib.request
-from collections.abc import Iterator
-from contextlib import closing
 from urllib.error import HTTPError
-from urllib.parse import quote
 
 import pytest
 from browser import Chrome, Server
-from markup import MARKUP, watched
 from pages import (
     ANSWER,
     ENDLESS,
@@ -38,19 +34,6 @@ FOOLISH = (
     "?tab=%00&view=&plots=,,,&pace=never&load=[[0,0],[0,1]]&instant=7",
     "?peak=" + "9" * 4000 + "&%3Cscript%3Ealert(1)%3C/script%3E=1",
 )
-PLACES = (
-    "class",
-    "scene",
-    "lesson",
-    "case",
-    "tab",
-    "question",
-    "plots",
-    "file",
-    "displacement",
-    MARKUP,
-)
-"""Parts of an address that a text may be given for."""
 QUIET = 1.0
 """Seconds without a message after which none is on its way."""
 SPEAK = """async (address) => {
@@ -62,38 +45,6 @@ SPEAK = """async (address) => {
   })
 }"""
 """Has the browser open a session, and say what is no message of Bokeh's."""
-
-
-@pytest.fixture(scope="module")
-def stranger(chrome: Chrome, server: Server) -> Iterator[Desk]:
-    """A page that is opened by a foolish address, once, and is closed by a test."""
-    text = quote(MARKUP, safe="")
-    said = "&".join(f"{quote(place, safe='')}={text}" for place in PLACES)
-    query = f"?friction=-1&moon=3&{ANSWER}&{said}"
-    with closing(Desk(server, chrome, query)) as made:
-        yield made
-
-
-def test_what_a_foolish_address_has_is_said_on_its_page_and_nothing_of_it_runs(
-    stranger: Desk,
-) -> None:
-    # Only of a page that has just been opened.
-    stranger.close()
-    page = stranger.page()
-    with watched(page):
-        expect(page.locator(".status")).to_contain_text("From the address: ")
-        expect(page.locator(".status")).to_contain_text("cannot be −1")
-        expect(page.locator(".status")).to_contain_text(
-            "moon: there is no such setting"
-        )
-        expect(page.locator(".status")).to_contain_text("there is no scene <img")
-        expect(page.get_by_text("There is no class <img").first).to_be_visible()
-        is_solved(page)
-    # Bokeh's figures would not follow what moves them.
-    place = page.locator(".scene").bounding_box()
-    enter(page, "Peak load", "1000", over="900")
-    expect(page.locator(".status")).not_to_contain_text("From the address: ")
-    assert page.locator(".scene").bounding_box() == place
 
 
 def test_a_network_that_breaks_and_is_mended_costs_no_settings(
