@@ -334,14 +334,14 @@ class Function:
         """Find the flaw of a value."""
         if callable(value):
             return None
-        return Flaw(value, self.allowed, "give what makes it")
+        return Flaw(value, self.allowed, "give a function")
 
 
 class AnyOf:
-    """Values of any of some kinds.
+    """Values of one of several kinds.
 
-    Of other values the last kind describes the flaw, and of a number the kind of
-    numbers.
+    The flaw of any other value is that which the last kind finds; of a number that
+    which the kind of numbers finds.
     """
 
     def __init__(self, *kinds: Kind) -> None:
@@ -398,7 +398,7 @@ class SequenceOf:
 
 @dataclass(frozen=True)
 class MappingOf:
-    """Mappings from names to values of one kind; any names if `names` is None."""
+    """Mappings from names to values of one kind; any names if `names` is empty."""
 
     kind: Kind
     names: tuple[str, ...] = ()

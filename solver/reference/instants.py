@@ -368,7 +368,7 @@ class Instants:
             fallen = falls
             if not is_last and not np.array_equal(at.states, before.states):
                 continue
-            near = self._newton.seek_from(at, end)
+            near = self._newton.seek(self.system, at, end)
             if near is None:
                 continue
             if self._newton.stability.is_stable(near, end):

@@ -111,7 +111,7 @@ def law_residuals(
     held, prescribed = _prescribed(problem)
     deformation = _deformation(problem, displacement)
     missing, size = _missing_force(problem, displacement, deformation, force, held)
-    interfaces = _interface_fields(problem, displacement, force)
+    interfaces = _interface_fields(problem, displacement, force, held)
     length = ROUNDED * max(largest_size(displacement), size * _softest(problem))
     length = max(length, size / _stiffest(problem))
     length = max([length] + [each.largest_jump for each in interfaces])
@@ -267,15 +267,14 @@ class _InterfaceFields:
 
 
 def _interface_fields(
-    problem: Problem, displacement: Array, force: Array
+    problem: Problem, displacement: Array, force: Array, held: Indices
 ) -> list[_InterfaceFields]:
     """Fields of every interface with contact.
 
     By displacements (n_dofs, n_instants) and contact forces (n_forces, n_instants),
-    scaled.
+    scaled, and degrees of freedom of prescribed displacement, (n_held,).
     """
     found = []
-    held, _ = _prescribed(problem)
     for name, law in problem.contacts.items():
         slices = problem.contacts.forces[name]
         friction = force[slices[-1]]

@@ -327,7 +327,7 @@ def test_a_solution_is_found_again_from_itself_in_one_step(seed: int) -> None:
     found = newton.follow(at, sides, [at, *newton.approach(at, sides)])
     assert found is not None
     before = newton.system.solutions
-    again = newton.seek_from(found, sides)
+    again = newton.seek(newton.system, found, sides)
     assert again is not None
     assert newton.system.solutions == before + 1
     assert np.array_equal(again.step.jump, found.step.jump)

@@ -50,8 +50,6 @@ ZERO = 1e-9
 """Share of the largest value in a run below which a key figure is zero."""
 EQUAL = 1e-6
 """Relative difference up to which two values count as equally large."""
-Axes = tuple[tuple[str, str], tuple[str, str]]
-"""Title and unit of each of the two axes of a loop."""
 OF_UNITS = {
     "m": "displacement",
     "N": "force",
