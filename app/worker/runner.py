@@ -30,7 +30,7 @@ from solver.reference.rules import States
 from solver.reference.solution import Reference
 from solver.scenes import discretise
 from solver.scenes.method import method_of
-from solver.study.quantities.finished import neighbour
+from solver.study.scene_run import neighbour
 
 HURRY = 0.1
 """Longest time for which a run that follows a dragged slider is not shown, s."""

@@ -33,7 +33,8 @@ from solver.discrete import Problem
 from solver.discrete.problem import is_unloaded
 from solver.files.disk import check_place, why
 from solver.files.paraview import PARAVIEW, check_plane, write_series
-from solver.files.saved import save_result, scene_settings, summary
+from solver.files.results import save_result, summary
+from solver.files.saved import scene_settings
 from solver.latin import Ending, Solution, solve, solve_in_slabs
 from solver.latin.stages.blocks import one_blas_thread
 from solver.reference.assembly import NoReferenceError
@@ -44,14 +45,9 @@ from solver.scenes.method import method_of
 from solver.settings.definitions import lines_of, properties_of
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError, allowed
+from solver.study.known_reference import KnownReference, known_reference
 from solver.study.quantities import QUANTITIES, reading
-from solver.study.quantities.finished import (
-    FinishedRun,
-    KeyFigure,
-    KnownReference,
-    figures_of,
-    known_reference,
-)
+from solver.study.quantities.finished import FinishedRun, KeyFigure, figures_of
 from solver.study.quantities.quantity import NEVER, Quantity
 
 DESCRIPTION = (

@@ -20,7 +20,8 @@ from solver.settings.definitions import is_logarithmic, properties_of
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError
 from solver.study.measured_loop import LoopComparison, MeasuredLoop, rms
-from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.finished import FinishedRun
+from solver.study.scene_run import finished_run
 
 NOT_FITTED = "Method", "Stop", "Decomposition"
 """Groups of settings that do not change the solution."""

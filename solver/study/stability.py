@@ -26,12 +26,8 @@ from solver.reference.law_residuals import LawResiduals, RowFields, law_residual
 from solver.reference.solution import Reference
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
-from solver.study.quantities.finished import (
-    BROKEN,
-    REFUSED,
-    finished_run,
-    known_reference,
-)
+from solver.study.known_reference import known_reference
+from solver.study.scene_run import BROKEN, REFUSED, finished_run
 
 CASES = Path(__file__).with_name("stability_cases.toml")
 LONGEST = 60.0

@@ -9,15 +9,14 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-from solver.files.saved import (
+from solver.files.saved import format_in, scene_settings
+from solver.files.toml_files import (
     check_controls,
     check_keys,
     fields_in,
-    format_in,
     placed,
     read_toml,
     require,
-    scene_settings,
 )
 from solver.settings.definitions import properties_of
 from solver.settings.scene import Icon, Settings

@@ -17,7 +17,7 @@ from pages import (
 from playwright.sync_api import Page, expect
 
 from app.state import default_settings
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 SIZES = {"elements": 20, "instants": 21, "substructures": 1}
 QUERY = "&".join([f"{name}={number}" for name, number in SIZES.items()])

@@ -15,7 +15,7 @@ from solver.reference.rules import rules_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import BlockSettings
 from solver.scenes.method import method_of
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 from solver.study.stability import Verdict, judge, run
 
 BLOCK = (

@@ -24,8 +24,8 @@ from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.study.quantities import reading
-from solver.study.quantities.finished import finished_run
 from solver.study.quantities.reduction_measures import clips_in
+from solver.study.scene_run import finished_run
 
 
 @st.composite

@@ -21,7 +21,8 @@ from solver.reference.shakedown import (
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycles import cycle_ends
-from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.finished import FinishedRun
+from solver.study.scene_run import finished_run
 
 N_CYCLES = 4
 LOADS = {"layers": "bend_load", "block": "top_tangential_load"}

@@ -24,7 +24,7 @@ from solver.scenes.mesh_files import (
 from solver.scenes.named_sides import conditions_of
 from solver.settings.values import SettingError
 from solver.study.quantities import QUANTITIES
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 MESH = CATALOGUE["mesh"]
 FIELDS = {

@@ -19,8 +19,8 @@ from solver.latin import Ending
 from solver.latin.end.status import Status
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE
-from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
 from solver.study.random_runs import draw, random_case
+from solver.study.scene_run import BROKEN, REFUSED, finished_run
 from solver.study.stability import (
     APART,
     AT_ROUNDING,
@@ -118,7 +118,7 @@ def test_a_warning_breaks_a_run(monkeypatch):
     def warns(problem, stop):
         warnings.warn("overflow", RuntimeWarning, stacklevel=1)
 
-    monkeypatch.setattr("solver.study.quantities.finished.reference_of", warns)
+    monkeypatch.setattr("solver.study.known_reference.reference_of", warns)
     (row,) = judged_runs([StabilityCase("zero", "bar", {"peak": 0.0})])
     assert row["ending"] == BROKEN
     assert "overflow" in row["advice"]
@@ -265,7 +265,7 @@ def test_a_reference_that_breaks_a_law_judges_nobody(monkeypatch):
         found = reference_of(problem)
         return dataclasses.replace(found, contact_force=0.999 * found.contact_force)
 
-    monkeypatch.setattr("solver.study.quantities.finished.reference_of", weaker)
+    monkeypatch.setattr("solver.study.known_reference.reference_of", weaker)
     values = {**SMALL["bar"], "finish": "none", "accuracy": 1e-3}
     (row,) = judged_runs([StabilityCase("by its own", "bar", values, error_force=0.1)])
     assert row["verdict"] == Verdict.UNCLEAR

@@ -28,13 +28,8 @@ from solver.latin.end.status_step import states_of
 from solver.reference.rules import States
 from solver.refusal import RefusedError
 from solver.settings.values import SettingError
-from solver.study.quantities.finished import (
-    BROKEN,
-    REFUSED,
-    FinishedRun,
-    finished_run,
-    warm_up,
-)
+from solver.study.quantities.finished import FinishedRun
+from solver.study.scene_run import BROKEN, REFUSED, finished_run, warm_up
 from solver.study.sweep.plan import LOST, STUCK, Plan, Row
 
 WORKER = "versions of a worker"
