@@ -9,14 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from app.frame import (
-    Extremes,
-    Floats,
-    Frame,
-    FrictionInterface,
-    InterfaceFields,
-    Run,
-)
+from app.frame import Extremes, Floats, Frame, FrictionInterface, InterfaceFields, Run
 from app.messages import TABLE, Needs
 from app.worker.cells import floats, thinned
 from app.worker.extras import EXTRAS, Sampled
@@ -38,10 +31,7 @@ from solver.scenes.remarks import remarks_on
 from solver.settings.scene import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.cycles import loads_over_time, turning_points
-from solver.study.quantities.finished import (
-    FinishedRun,
-    figures_of,
-)
+from solver.study.quantities.finished import FinishedRun, figures_of
 
 MOST_INSTANTS = 401
 MOST_POINTS = 401

@@ -36,15 +36,9 @@ from solver.study.stability import Row, extreme_cases, judged_runs, passed
 from solver.study.sweep.executors import FORMS, opened
 from solver.study.sweep.plan import FORM, LOST, STUCK, Plan, plan_of
 from solver.study.sweep.plan import Row as SweepRow
-from solver.study.sweep.report import (
-    counts,
-    csv_of,
-    growth,
-    lines_of,
-    rows_in,
-    write_sweep,
-)
+from solver.study.sweep.report import counts, growth, write_sweep
 from solver.study.sweep.run import longest_wait, sweep
+from solver.study.sweep.table import csv_of, lines_of, rows_in
 from solver.study.trade_case import case_from_file
 
 TABLE = "sweep.csv"

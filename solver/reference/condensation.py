@@ -15,19 +15,10 @@ from functools import cached_property
 
 import numpy as np
 
-from solver.arrays import (
-    ROUNDING,
-    Array,
-    Indices,
-    separated,
-)
+from solver.arrays import ROUNDING, Array, Indices, separated
 from solver.cache import CACHE, content_of
 from solver.discrete.problem import Problem
-from solver.reference.assembly import (
-    assembled_stiffness,
-    external_force,
-    jumps,
-)
+from solver.reference.assembly import assembled_stiffness, external_force, jumps
 from solver.reference.glued_structure import GluedStructure, free_dofs
 from solver.reference.rules import rules_of
 

@@ -23,18 +23,9 @@ from scipy import sparse
 from scipy.linalg import solve_triangular
 from scipy.sparse.linalg import SuperLU
 
-from solver.arrays import (
-    Array,
-    Flags,
-    Indices,
-    read_only,
-    sparse_factor,
-)
+from solver.arrays import Array, Flags, Indices, read_only, sparse_factor
 from solver.discrete.problem import Problem
-from solver.reference.assembly import (
-    Interrupted,
-    NoReferenceError,
-)
+from solver.reference.assembly import Interrupted, NoReferenceError
 from solver.reference.glued import base_of, from_jumps, self_stresses
 
 LOOSE = 1e-14

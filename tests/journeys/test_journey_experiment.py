@@ -5,15 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from pages import (
-    ANSWER,
-    button,
-    close_dialog,
-    field,
-    figures,
-    go,
-    is_solved,
-)
+from pages import ANSWER, button, close_dialog, field, figures, go, is_solved
 from playwright.sync_api import Page, expect
 
 from app.state import default_settings

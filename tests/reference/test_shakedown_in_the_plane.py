@@ -13,11 +13,7 @@ import numpy as np
 import pytest
 
 from solver.reference.assembly import NoReferenceError
-from solver.reference.shakedown import (
-    MOST_POINTS,
-    largest_swing,
-    slip_space,
-)
+from solver.reference.shakedown import MOST_POINTS, largest_swing, slip_space
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycles import cycle_ends
