@@ -18,9 +18,10 @@ from solver.reference.newton import FEWEST_STEPS, Newton
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.values import SettingError
+from solver.study.outcomes import AT_ROUNDING, run
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.finished import FinishedRun
-from solver.study.stability import AT_ROUNDING, Verdict, judge, run
+from solver.study.verdicts import Verdict, judge
 
 TENDON = {
     "guide": "duct",
