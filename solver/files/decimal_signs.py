@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from solver.files.disk import Refuse
 from solver.files.numerals import SIGNS, decimal_signs
 from solver.files.table_lines import Line
+from solver.settings.values import Refuse
 
 
 def notation_of(

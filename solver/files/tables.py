@@ -70,13 +70,13 @@ import numpy as np
 from solver.arrays import Array, Flags, Indices, read_only
 from solver.files.columns import TableColumn
 from solver.files.decimal_signs import notation_of
-from solver.files.disk import LARGEST, Refuse, too_large
+from solver.files.disk import LARGEST, too_large
 from solver.files.numerals import is_gap, number
 from solver.files.table_blocks import Block, block_of, fitted, headed
 from solver.files.table_lines import lines_of_text
 from solver.files.units import examples_of, size_in
 from solver.files.workbooks import is_archive, lines_of_workbook
-from solver.settings.values import SettingError
+from solver.settings.values import Refuse, SettingError
 
 STANDS_IN = {"displacement": "position"}
 """Quantities that may stand in for others that no column names."""
