@@ -24,7 +24,7 @@ from solver.latin import (
 from solver.latin.end.cost import RunCost, run_cost
 from solver.latin.end.status import collapses
 from solver.latin.end.status_step import Certificate
-from solver.reference.assembly import Interrupted
+from solver.reference.assembly import Interrupted, never
 from solver.reference.distance import Distance, distance_to
 from solver.reference.rules import States
 from solver.reference.solution import Reference
@@ -112,7 +112,7 @@ class Runner:
         start: Start,
         references: ReferenceCache,
         interrupted: Callable[[], bool],
-        halted: Callable[[], bool] = lambda: False,
+        halted: Callable[[], bool] = never,
         before: States | None = None,
     ) -> None:
         self._order = start

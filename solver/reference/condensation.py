@@ -18,7 +18,7 @@ import numpy as np
 from solver.arrays import ROUNDING, Array, Indices, separated
 from solver.cache import CACHE, content_of
 from solver.discrete.problem import Problem
-from solver.reference.assembly import assembled_stiffness, external_force, jumps
+from solver.reference.assembly import assembled_stiffness, external_force, jumps, never
 from solver.reference.glued_structure import GluedStructure, free_dofs
 from solver.reference.rules import rules_of
 
@@ -62,9 +62,7 @@ class Condensation:
         final where a jump is not unknown.
     """
 
-    def __init__(
-        self, problem: Problem, stop: Callable[[], bool] | None = None
-    ) -> None:
+    def __init__(self, problem: Problem, stop: Callable[[], bool] = never) -> None:
         """Condense a problem.
 
         Raises
@@ -96,7 +94,7 @@ class Condensation:
         self._condense_load()
 
     def _glued_structure(
-        self, problem: Problem, stop: Callable[[], bool] | None
+        self, problem: Problem, stop: Callable[[], bool]
     ) -> GluedStructure:
         """Structure glued at its contacts, from an earlier run if nothing changed."""
         moving = self._jumps[self.moving]

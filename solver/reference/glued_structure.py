@@ -87,7 +87,7 @@ class GluedStructure:
         jumps: sparse.csr_array,
         rigid: Flags,
         given: Array,
-        stop: Callable[[], bool] | None,
+        stop: Callable[[], bool],
     ) -> None:
         free = free_dofs(problem)
         free_jumps = jumps[:, free]
@@ -127,12 +127,10 @@ class GluedStructure:
         entries: int = self._factor.nnz + self.pulled.nnz
         return sum(field.nbytes for field in dense) + OF_ENTRY * entries
 
-    def _subtract_glued(
-        self, condensed: Array, stop: Callable[[], bool] | None
-    ) -> None:
+    def _subtract_glued(self, condensed: Array, stop: Callable[[], bool]) -> None:
         """Subtract the reaction of the glued structure, in place, (n_base, n_base)."""
         for columns in _blocks(len(condensed)):
-            if stop is not None and stop():
+            if stop():
                 raise Interrupted
             pulled = self.pulled[:, columns].toarray()
             condensed[:, columns] -= self.pulled.T @ self.solved(pulled)

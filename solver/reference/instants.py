@@ -14,6 +14,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.laws import OPEN
+from solver.reference.assembly import never
 from solver.reference.condensation import Condensation
 from solver.reference.newton import Newton
 from solver.reference.rules import (
@@ -68,7 +69,7 @@ class Instants:
         rest: Array | None,
         guess: States | None,
         may_hold: Callable[[int], bool],
-        stop: Callable[[], bool] | None = None,
+        stop: Callable[[], bool] = never,
     ) -> None:
         """Start from rest at zero.
 

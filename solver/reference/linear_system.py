@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import ROUNDING, Array, Indices, as_slice, largest_size
-from solver.reference.assembly import Interrupted
+from solver.reference.assembly import Interrupted, never
 from solver.reference.condensation import Condensation
 from solver.reference.factors import Factors, UpdatedFactors
 from solver.reference.rules import HELD, Increment, RightSides, States
@@ -91,7 +91,7 @@ class LinearSystem:
         condensed: Condensation,
         stiffness: Array,
         gauge: Array,
-        stop: Callable[[], bool] | None = None,
+        stop: Callable[[], bool] = never,
     ) -> None:
         self._stiffness = stiffness
         self._gauge = gauge
@@ -146,7 +146,7 @@ class LinearSystem:
 
     def __call__(self, states: States, right_sides: RightSides) -> Increment:
         """Solve for the step from the instant before, with states of shape (n,)."""
-        if self.stop is not None and self.stop():
+        if self.stop():
             raise Interrupted
         if self._states is None or not np.array_equal(states, self._states):
             self._factor(states)

@@ -25,6 +25,7 @@ import numpy as np
 
 from solver.arrays import ROUNDING, Array, Flags, Indices
 from solver.laws import OPEN
+from solver.reference.assembly import never
 from solver.reference.condensation import Condensation
 from solver.reference.friction_over_slip import FrictionOverSlip
 from solver.reference.linear_system import LinearSystem
@@ -82,7 +83,7 @@ class Newton:
     """
 
     def __init__(
-        self, condensed: Condensation, stop: Callable[[], bool] | None = None
+        self, condensed: Condensation, stop: Callable[[], bool] = never
     ) -> None:
         self.system = system_of(condensed, stop)
         self._condensed = condensed

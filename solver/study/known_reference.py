@@ -10,7 +10,7 @@ import numpy as np
 from solver.cache import CACHE
 from solver.discrete.problem import Problem
 from solver.latin.end.status import jump_of, limit_of
-from solver.reference.assembly import Interrupted, NoReferenceError
+from solver.reference.assembly import Interrupted, NoReferenceError, never
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 
@@ -34,7 +34,7 @@ class KnownReference(NamedTuple):
 
 
 def known_reference(
-    problem: Problem, stop: Callable[[], bool] | None = None
+    problem: Problem, stop: Callable[[], bool] = never
 ) -> KnownReference:
     """Find the reference; `stop` is called repeatedly, and ends the search.
 

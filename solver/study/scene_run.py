@@ -12,7 +12,7 @@ from solver.latin.end.certified import certified_answer
 from solver.latin.end.cost import costs_of
 from solver.latin.end.status import certified
 from solver.latin.end.status_step import status_step
-from solver.reference.assembly import Interrupted, NoReferenceError
+from solver.reference.assembly import Interrupted, NoReferenceError, never
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental_solver
 from solver.reference.rules import States
@@ -49,7 +49,7 @@ def finished_run(
     *,
     errors: bool = True,
     indicators: bool = True,
-    cancelled: Callable[[], bool] = lambda: False,
+    cancelled: Callable[[], bool] = never,
     before: States | None = None,
 ) -> FinishedRun:
     """Run a scene to its stop rule.
@@ -103,7 +103,7 @@ def neighbour(
     problem: Problem,
     settings: Settings,
     states: States,
-    stop: Callable[[], bool] | None = None,
+    stop: Callable[[], bool] = never,
     spent: float = 0.0,
 ) -> tuple[Answer, Decision] | None:
     """Solve by a status step from the states of a run with similar settings.

@@ -25,6 +25,7 @@ import numpy as np
 
 from solver.latin import Ending
 from solver.latin.end.status_step import states_of
+from solver.reference.assembly import never
 from solver.reference.rules import States
 from solver.refusal import RefusedError
 from solver.settings.values import SettingError
@@ -148,7 +149,7 @@ def sweep(
     done: Collection[int] = (),
     limit: float = math.inf,
     warm: bool = True,
-    cancelled: Callable[[], bool] = lambda: False,
+    cancelled: Callable[[], bool] = never,
 ) -> Iterator[Row]:
     """Run the points of a plan in an order from neighbour to neighbour.
 
