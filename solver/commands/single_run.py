@@ -75,8 +75,8 @@ def add_run(commands: Any) -> None:
     run.add_argument(
         "--slab",
         metavar="INSTANTS",
-        help="solve slab after slab of so many instants: those of a cycle, where a "
-        "load has many",
+        help="solve slab after slab of this number of instants, as those of a cycle of "
+        "a load with many",
     )
     run.add_argument(
         "--of",

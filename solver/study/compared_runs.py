@@ -162,7 +162,7 @@ class ComparedRuns:
         z
             Place, shape (p,).
         step
-            Step in z. Steps go both ways within bounds; the smallest one goes one way.
+            Step in z, both ways where bounds let it; the default one goes one way.
         directions
             Directions in z, shape (q, p); by default those of the settings.
         """

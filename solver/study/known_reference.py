@@ -38,7 +38,8 @@ def known_reference(
 ) -> KnownReference:
     """Find the reference; `stop` is called repeatedly, and ends the search.
 
-    Nothing that it prepares is kept: a run afterwards prepares its own in its time.
+    The cache is cleared afterwards, so that a run that follows is timed with all of its
+    own preparations.
     """
     try:
         reference = reference_of(problem, stop)

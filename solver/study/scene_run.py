@@ -31,10 +31,10 @@ TINY: dict[str, dict[str, object]] = {
 }
 """Tiny runs that precede timed ones: importing code is no part of a run's time."""
 ALONE = 60
-"""Iterations, with everything beside them, that take as long as a usual run.
+"""Iterations of a usual run, by which the cost of a status step is judged.
 
-A status step from a neighbour may take a third of that: 4 systems an instant on 50
-elements and 13 on 1600. It takes 1 to 3 and 3 to 9 (measured)."""
+A status step from a neighbour may take a third of their time: 4 systems an instant on
+50 elements and 13 on 1600. It takes 1 to 3 and 3 to 9 (measured)."""
 
 
 @cache
