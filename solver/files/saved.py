@@ -34,15 +34,17 @@ def read_settings(data: bytes | str, source: str) -> tuple[Settings, Mapping[str
     what is no TOML names the source.
     """
     values = parse_toml(data, "the settings file", source)
-    values.pop("case", None)
-    number = format_in(values)
-    kind = scene_settings(values.pop("scene", None))
+    kind, number = head_of(values)
     settings = kind.checked(typed_numbers(values, kind.definitions()))
     return settings, meant_before(settings, values, number)
 
 
-def format_in(values: dict[str, Any]) -> int:
-    """Remove the number of the format from the values of a file; 1 if missing."""
+def head_of(values: dict[str, Any]) -> tuple[type[Settings], int]:
+    """Settings of the scene of a file, and the number of its format, 1 if missing.
+
+    They are removed from the values of the file, and so is a case: settings are left.
+    """
+    values.pop("case", None)
     number = values.pop("format", 1)
     require(
         isinstance(number, int) and 1 <= number <= FORMAT,
@@ -51,7 +53,7 @@ def format_in(values: dict[str, Any]) -> int:
         f"a whole number from 1 to {FORMAT}",
         "the file is of a later version: update Slipfront, or save the settings again",
     )
-    return int(number)
+    return scene_settings(values.pop("scene", None)), number
 
 
 def meant_before(
@@ -83,13 +85,10 @@ def settings_from_command(
     how a CSV file was understood, and which settings of a saved file had another
     meaning in its format.
     """
-    values: dict[str, Any] = {"scene": scene}
-    number = FORMAT
+    values: dict[str, Any] = {"scene": scene, "format": FORMAT}
     if scene.endswith(".toml"):
         values = read_toml(Path(scene), "settings file")
-        values.pop("case", None)
-        number = format_in(values)
-    kind = scene_settings(values.pop("scene", None))
+    kind, number = head_of(values)
     values = typed_numbers(values, kind.definitions())
     # Names of files are replaced by points before anything is checked.
     tables = read_tables(kind, values, Path(scene).parent)
