@@ -13,7 +13,8 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.rods.rods import End, Rods
+from solver.discrete.rods.end import End
+from solver.discrete.rods.rods import Rods
 from solver.discrete.substructure import tributary
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain

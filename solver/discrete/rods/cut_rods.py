@@ -13,9 +13,10 @@ from scipy.linalg import block_diag
 from solver.arrays import Array, Indices
 from solver.cache import CACHE
 from solver.discrete.problem import Problem
+from solver.discrete.rods.end import SIDES, End
 from solver.discrete.rods.pieces import Piece, RodPieces, content_without_friction
 from solver.discrete.rods.rod_rows import NO_ROW, RodRows
-from solver.discrete.rods.rods import SIDES, End, Rods
+from solver.discrete.rods.rods import Rods
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity, Substructure, tributary
 from solver.laws import Contact, Dirichlet, Interface, Neumann, Perfect, RodStiffness
