@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import operator
 from collections.abc import Mapping, Sequence, Sized
 from dataclasses import dataclass
 from numbers import Integral
@@ -222,21 +223,16 @@ class Numbers:
             maximum = minimum
         else:
             maximum = float(value.max())
-        if self.above:
-            is_above = minimum > self.low
-        else:
-            is_above = minimum >= self.low
+        is_above = operator.gt if self.above else operator.ge
         is_finite = -math.inf < minimum and maximum < math.inf
-        return is_above and is_finite and maximum <= self.high
+        return is_above(minimum, self.low) and is_finite and maximum <= self.high
 
     def _first_flaw(self, value: Any) -> Flaw:
         """Find the flaw of the first wrong number of an array."""
         with np.errstate(invalid="ignore"):
-            if self.above:
-                is_above = value > self.low
-            else:
-                is_above = value >= self.low
-            is_fine = is_above & (value <= self.high) & np.isfinite(value)
+            is_above = operator.gt if self.above else operator.ge
+            is_in = is_above(value, self.low) & (value <= self.high)
+            is_fine = is_in & np.isfinite(value)
         place = np.unravel_index(int(np.argmin(is_fine)), value.shape)
         number = float(value[place])
         entry = f"entry [{', '.join(str(int(index)) for index in place)}]"

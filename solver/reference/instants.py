@@ -35,7 +35,7 @@ FIRST_PART = 0.25
 SHORTEST_PART = 2.0**-12
 """Share of the load of an instant within which the solution is lost, where it jumps."""
 SHORT_PART = 2.0**-4
-"""The same where friction does not change with slip: beyond it contacts rarely hold."""
+"""The same where friction does not change with slip: smaller parts rarely find more."""
 SLIDES = 100
 """Largest number of slips up to the next solution, each with the friction that the slip
 before has left."""

@@ -25,13 +25,14 @@ LOOSE = 1e-14
 """Pivot, as a share of the largest stiffness of all jumps, below which a motion is
 free."""
 MANY = 200
-"""Unknowns from which on factors are updated: those of fewer are made again as soon."""
+"""Number of unknowns from which on factors are updated: smaller systems are factored
+again in the same time."""
 CHANGED = 6
 """Factors are updated where at most one unknown in this number comes or goes: from step
 to step it is one in a hundred."""
 FAR = 100.0
-"""Rigid motion over deformation, the largest of both, from which on the digits of the
-deformation count by themselves."""
+"""Ratio of the largest rigid motion to the largest deformation from which on forces are
+found from the deformation alone, as their sum has lost its digits."""
 FEW = 4
 """Rows of S are gathered where they are at most one in this number; else all of S is
 read."""
