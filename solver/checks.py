@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import operator
 from collections.abc import Mapping, Sequence, Sized
 from dataclasses import dataclass
 from numbers import Integral
@@ -222,21 +223,16 @@ class Numbers:
             maximum = minimum
         else:
             maximum = float(value.max())
-        if self.above:
-            is_above = minimum > self.low
-        else:
-            is_above = minimum >= self.low
+        is_above = operator.gt if self.above else operator.ge
         is_finite = -math.inf < minimum and maximum < math.inf
-        return is_above and is_finite and maximum <= self.high
+        return is_above(minimum, self.low) and is_finite and maximum <= self.high
 
     def _first_flaw(self, value: Any) -> Flaw:
         """Find the flaw of the first wrong number of an array."""
         with np.errstate(invalid="ignore"):
-            if self.above:
-                is_above = value > self.low
-            else:
-                is_above = value >= self.low
-            is_fine = is_above & (value <= self.high) & np.isfinite(value)
+            is_above = operator.gt if self.above else operator.ge
+            is_in = is_above(value, self.low) & (value <= self.high)
+            is_fine = is_in & np.isfinite(value)
         place = np.unravel_index(int(np.argmin(is_fine)), value.shape)
         number = float(value[place])
         entry = f"entry [{', '.join(str(int(index)) for index in place)}]"
@@ -334,14 +330,14 @@ class Function:
         """Find the flaw of a value."""
         if callable(value):
             return None
-        return Flaw(value, self.allowed, "give what makes it")
+        return Flaw(value, self.allowed, "give a function")
 
 
 class AnyOf:
-    """Values of any of some kinds.
+    """Values of one of several kinds.
 
-    Of other values the last kind describes the flaw, and of a number the kind of
-    numbers.
+    The flaw of any other value is that which the last kind finds; of a number that
+    which the kind of numbers finds.
     """
 
     def __init__(self, *kinds: Kind) -> None:
@@ -398,7 +394,7 @@ class SequenceOf:
 
 @dataclass(frozen=True)
 class MappingOf:
-    """Mappings from names to values of one kind; any names if `names` is None."""
+    """Mappings from names to values of one kind; any names if `names` is empty."""
 
     kind: Kind
     names: tuple[str, ...] = ()

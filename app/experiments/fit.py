@@ -17,9 +17,9 @@ from app.state import TABS, PageState
 from app.widgets import button
 from solver.files.saved import dump, settings_from_toml
 from solver.settings.definitions import title_of
-from solver.study.compared_runs import fittable
 from solver.study.fit import MOST
 from solver.study.fit_report import LOOP
+from solver.study.fitted_settings import fittable
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.page import Panel, PanelAxis, PanelCurve
 

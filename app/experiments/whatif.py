@@ -28,8 +28,10 @@ from solver.settings.scene import Settings
 from solver.study.mesh import decides
 from solver.study.page import Chart
 from solver.study.quantities import QUANTITIES, reading
+from solver.study.sweep.charts import chart_of
 from solver.study.sweep.plan import Plan
-from solver.study.sweep.report import chart_of, counts, csv_of
+from solver.study.sweep.report import counts
+from solver.study.sweep.table import csv_of
 
 MESH = "Is the mesh fine enough?"
 SCALES = {"automatic": None, "linear": False, "logarithmic": True}

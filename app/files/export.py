@@ -27,7 +27,7 @@ from solver.study.comparison import PER
 LOOK: dict[str, Any] = {"size": "small", "margin": (4, 8), **up_to(340)}
 PROGRAM = """\
 from solver.files import scene_settings
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 settings = scene_settings("{scene}").checked(
     {values}

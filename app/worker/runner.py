@@ -24,13 +24,13 @@ from solver.latin import (
 from solver.latin.end.cost import RunCost, run_cost
 from solver.latin.end.status import collapses
 from solver.latin.end.status_step import Certificate
-from solver.reference.assembly import Interrupted
+from solver.reference.assembly import Interrupted, never
 from solver.reference.distance import Distance, distance_to
 from solver.reference.rules import States
 from solver.reference.solution import Reference
 from solver.scenes import discretise
 from solver.scenes.method import method_of
-from solver.study.quantities.finished import neighbour
+from solver.study.scene_run import neighbour
 
 HURRY = 0.1
 """Longest time for which a run that follows a dragged slider is not shown, s."""
@@ -112,7 +112,7 @@ class Runner:
         start: Start,
         references: ReferenceCache,
         interrupted: Callable[[], bool],
-        halted: Callable[[], bool] = lambda: False,
+        halted: Callable[[], bool] = never,
         before: States | None = None,
     ) -> None:
         self._order = start

@@ -31,7 +31,7 @@ from solver.scenes.remarks import remarks_on
 from solver.settings.scene import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.cycles import loads_over_time, turning_points
-from solver.study.quantities.finished import FinishedRun, figures_of, slipping_shares
+from solver.study.quantities.finished import FinishedRun, figures_of
 
 MOST_INSTANTS = 401
 MOST_POINTS = 401
@@ -194,7 +194,9 @@ class Sampler:
         """Share of all points of surfaces that slip, at shown instants, (n_shown,)."""
         # Springs are next to the surfaces, and neither stick nor slip.
         status = iterate.status[self.problem.contacts.on_surfaces]
-        return slipping_shares(status[:, self.columns])
+        if not len(status):
+            return np.zeros(len(self.columns))
+        return np.asarray((np.abs(status[:, self.columns]) == 1).mean(axis=0))
 
     def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
         known = {name: partial(extra, self._sampled) for name, extra in EXTRAS.items()}

@@ -36,15 +36,9 @@ from solver.study.stability import Row, extreme_cases, judged_runs, passed
 from solver.study.sweep.executors import FORMS, opened
 from solver.study.sweep.plan import FORM, LOST, STUCK, Plan, plan_of
 from solver.study.sweep.plan import Row as SweepRow
-from solver.study.sweep.report import (
-    counts,
-    csv_of,
-    growth,
-    lines_of,
-    rows_in,
-    write_sweep,
-)
+from solver.study.sweep.report import counts, growth, write_sweep
 from solver.study.sweep.run import longest_wait, sweep
+from solver.study.sweep.table import csv_of, lines_of, rows_in
 from solver.study.trade_case import case_from_file
 
 TABLE = "sweep.csv"
@@ -89,7 +83,7 @@ def _add_stability(commands: Any) -> None:
     )
     kinds = parser.add_mutually_exclusive_group()
     kinds.add_argument("--quick", action="store_true", help="a quarter of the cases")
-    kinds.add_argument("--random", metavar="N", help="so many random runs, instead")
+    kinds.add_argument("--random", metavar="N", help="make N random runs instead")
     parser.add_argument("--seed", default=1, help="of the random runs")
 
 
@@ -107,7 +101,7 @@ def _add_sweep(commands: Any) -> None:
         action="append",
         required=True,
         metavar="NAME,...",
-        help="what is asked of a run",
+        help="names of quantities of the runs",
     )
     parser.add_argument("--on", default="processes", metavar="EXECUTOR", help=FORMS)
     parser.add_argument("--limit", default=LIMIT, help="seconds that a run may take")

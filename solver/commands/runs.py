@@ -60,7 +60,7 @@ def add_checks(commands: Any) -> None:
     purpose = "whether elements and instants are enough for a quantity"
     mesh = add_command(commands, "mesh", purpose, _mesh, of_scene=True)
     mesh.add_argument(
-        "--of", required=True, metavar="NAME", help="what is asked of a run"
+        "--of", required=True, metavar="NAME", help="name of a quantity of the run"
     )
     purpose = "how far a run is from a measured loop, or another program"
     compare = add_command(commands, "compare", purpose, _compare, of_scene=True)

@@ -15,7 +15,8 @@ from solver.discrete.plane.rectangles.sides import Side, SideComponent, Spring, 
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.rods import cut_rods
-from solver.discrete.rods.rods import End, Rods
+from solver.discrete.rods.end import End
+from solver.discrete.rods.rods import Rods
 from solver.discrete.rope import cut_rope
 from solver.discrete.rope.rope import Rope
 from solver.discrete.structure import Structure

@@ -69,7 +69,7 @@ class FewEliminated:
     Raises
     ------
     np.linalg.LinAlgError
-        For a dense stiffness that could move while the kept ones is held.
+        For a dense stiffness that could move while the kept ones are held.
     """
 
     def __init__(self, inner: sparse.csc_array | Array, coupling: Array) -> None:
@@ -102,11 +102,12 @@ class FewEliminated:
 class ManyEliminated:
     """Elimination by factors of the whole sparse stiffness with springs.
 
-    The factor's last block is what elimination has made of the stiffness by then. For
-    an ordering by degree the kept ones comes last, as if each of it were tied to all
-    others of it; a few of the rest that are tied to as many come between, and are
-    eliminated from the dense block. A spring beside each that is kept makes a body
-    that can move regular, and is taken off the block again.
+    The last block of the factor is the stiffness that is left when all before it are
+    eliminated. An ordering by degree takes the kept degrees of freedom last, as entries
+    between all of them tie each to all others. A few of the rest that are tied to as
+    many may come among them, and are eliminated from the dense block. A body that can
+    move has a singular stiffness: so each kept degree of freedom has a spring, which is
+    subtracted from the block again.
 
     Parameters
     ----------
@@ -145,8 +146,8 @@ class ManyEliminated:
     def of(cls, whole: sparse.csc_array, kept: Indices) -> ManyEliminated | None:
         """Eliminate all but `kept` of a stiffness, (n, n); None where that is slower.
 
-        None where it is not as large as that, or where much of it comes after what is
-        kept, as in a body that has many more degrees of freedom.
+        It is slower for few degrees of freedom, and where many others come after the
+        first that is kept, as in a body that has many more degrees of freedom.
         """
         count = len(kept)
         if count < SOME or whole.shape[0] - count < max(MANY, MORE * count):
@@ -186,7 +187,7 @@ class ManyEliminated:
             sprung = self._sprung(force)
             further = kept - sprung[self._kept]
             rest += sprung[self._rest]
-        # A few columns are had without the response.
+        # A few columns cost less without the response.
         if FEW * kept.shape[1] < len(kept):
             return rest + self._pulled_along(further)
         return rest + self._response @ further

@@ -11,7 +11,6 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
-from solver.files.disk import Refuse
 from solver.files.units import (
     SYMBOLS,
     examples_of,
@@ -19,6 +18,7 @@ from solver.files.units import (
     parse_unit,
     size_in,
 )
+from solver.settings.values import Refuse
 
 WORDS = {
     "time": "time t zeit elapsed sec secs second seconds sekunde sekunden",

@@ -6,15 +6,13 @@ import errno
 import os
 import secrets
 import stat
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
 
-from solver.settings.values import SettingError
+from solver.settings.values import Refuse
 
-Refuse = Callable[[str], SettingError]
-"""Function from a remedy to a refusal."""
 LARGEST = 4_000_000
 """Largest size of a file of settings, a table, a mesh or a lesson, in bytes: some
 200 000 points of a load path, 60 000 elements. A page that reads a table of this size

@@ -19,9 +19,9 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.inside import Inside
-from solver.files.disk import Refuse, whole_file
+from solver.files.disk import whole_file
 from solver.latin import Iterate
-from solver.settings.values import SettingError
+from solver.settings.values import Refuse, SettingError
 
 if TYPE_CHECKING:
     import meshio

@@ -9,10 +9,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from solver.files.columns import TableColumn, are_units, column_of
-from solver.files.disk import Refuse
 from solver.files.numerals import is_numeral
 from solver.files.table_lines import Line, is_blank, split_cells
 from solver.files.units import is_spelt_as_unit
+from solver.settings.values import Refuse
 
 FARTHEST = 100
 """Lines of text above rows among which a head is sought."""

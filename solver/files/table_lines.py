@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from solver.files.columns import are_units
-from solver.files.disk import Refuse
 from solver.files.numerals import is_gap, is_numeral
+from solver.settings.values import Refuse
 
 BLANKS = "  "
 """Separator of columns that stand at least two blanks apart."""

@@ -69,13 +69,14 @@ import numpy as np
 
 from solver.arrays import Array, Flags, Indices, read_only
 from solver.files.columns import TableColumn
-from solver.files.disk import LARGEST, Refuse, too_large
-from solver.files.numerals import SIGNS, decimal_signs, is_gap, number
+from solver.files.decimal_signs import notation_of
+from solver.files.disk import LARGEST, too_large
+from solver.files.numerals import is_gap, number
 from solver.files.table_blocks import Block, block_of, fitted, headed
-from solver.files.table_lines import Line, lines_of_text
+from solver.files.table_lines import lines_of_text
 from solver.files.units import examples_of, size_in
 from solver.files.workbooks import is_archive, lines_of_workbook
-from solver.settings.values import SettingError
+from solver.settings.values import Refuse, SettingError
 
 STANDS_IN = {"displacement": "position"}
 """Quantities that may stand in for others that no column names."""
@@ -354,7 +355,7 @@ def read_table(
     line_numbers = np.array([row.number for row in block.rows])
     line_numbers.flags.writeable = False
     # One sign for the whole table: a column of whole numbers says nothing by itself.
-    decimal, thousands = _notation(block.rows, separator, refuse)
+    decimal, thousands = notation_of(block.rows, separator, refuse)
     return Table(
         columns=tuple(columns),
         cells=tuple(map(tuple, cells)),
@@ -384,73 +385,3 @@ def _interruptions(block: Block) -> list[str]:
     if block.passed:
         remarks.append(f"passed over {_named([line.number for line in block.passed])}")
     return remarks
-
-
-def _notation(
-    rows: Sequence[Line], separator: str, refuse: Refuse
-) -> tuple[str, list[str]]:
-    """Decimal sign of a table, and messages on signs between thousands, as above."""
-    # Most tables have points alone: then no cell is matched a second time.
-    if not any(map(_has_doubtful_sign, rows)):
-        return ".", []
-    sure, unsure = _cells_by_sign(rows)
-    _check_alike(sure, refuse)
-    # Commas before three digits alone, as 1,234: nothing in the table says whether they
-    # are decimal.
-    if not sure["."] and not sure[","] and unsure[","]:
-        # Programs write semicolons between columns where the comma is decimal.
-        if unsure["."] or separator != ";":
-            line, cell = unsure[","][0]
-            decimals = cell.replace(",", ".")
-            raise refuse(
-                f"line {line} has {cell!r}, which may be {decimals} or "
-                f"{cell.replace(',', '')}: write decimals with a point, and thousands "
-                "without a sign"
-            )
-        return ",", []
-    decimal = "," if sure[","] else "."
-    other = "." if decimal == "," else ","
-    if unsure[other] or any(other in cell for _, cell in sure[decimal]):
-        names = {",": "commas", ".": "points"}
-        return decimal, [f"thousands with {names[other]}"]
-    return decimal, []
-
-
-def _has_doubtful_sign(row: Line) -> bool:
-    """Check whether a cell has a comma, or points that cannot all be decimal."""
-    return any("," in cell or cell.count(".") > 1 for cell in row.cells)
-
-
-CellsBySign = dict[str, list[tuple[int, str]]]
-"""Cells with the number of their line, by a decimal sign."""
-
-
-def _cells_by_sign(rows: Sequence[Line]) -> tuple[CellsBySign, CellsBySign]:
-    """Cells that are numbers with only one decimal sign, by sign, and with both."""
-    sure: CellsBySign = {sign: [] for sign in SIGNS}
-    unsure: CellsBySign = {sign: [] for sign in SIGNS}
-    for row in rows:
-        for cell in row.cells:
-            if "," not in cell and "." not in cell:
-                continue
-            signs = decimal_signs(cell)
-            if len(signs) == 1:
-                sure[signs].append((row.number, cell))
-            elif signs:
-                unsure["," if "," in cell else "."].append((row.number, cell))
-    return sure, unsure
-
-
-def _check_alike(sure: CellsBySign, refuse: Refuse) -> None:
-    """Refuse decimal points and commas in one table; name a line of the rarer one."""
-    if not sure["."] or not sure[","]:
-        return
-    # Likely the rarer one is the slip, so its line is named.
-    rare = "," if len(sure[","]) <= len(sure["."]) else "."
-    line, cell = sure[rare][0]
-    names = {",": "comma", ".": "point"}
-    common = "." if rare == "," else ","
-    raise refuse(
-        f"line {line} has {cell!r}, with a decimal {names[rare]} where others have a "
-        f"{names[common]}: write all of them alike, and thousands without a sign"
-    )

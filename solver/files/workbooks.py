@@ -6,8 +6,8 @@ import io
 import warnings
 import zipfile
 
-from solver.files.disk import Refuse
 from solver.files.table_lines import Line, line_of, up_to_last_filled
+from solver.settings.values import Refuse
 
 UNPACKED = 20_000_000
 """Largest size of a workbook's parts in bytes: some five times that of a text."""

@@ -14,6 +14,7 @@ from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iteration import iterations
 from solver.latin.method import Latin
 from solver.latin.stages.blocks import one_blas_thread
+from solver.reference.assembly import never
 from solver.reference.distance import Distance
 
 
@@ -117,7 +118,7 @@ def judged(
     latin: Latin,
     start: Checkpoint | None = None,
     spent: float = 0.0,
-    interrupted: Callable[[], bool] = lambda: False,
+    interrupted: Callable[[], bool] = never,
 ) -> Iterator[tuple[Iterate, Decision]]:
     """Iterate, and judge every iterate by the stop rules.
 
@@ -158,7 +159,7 @@ def solve(
     start: Checkpoint | None = None,
     watch: bool = True,
     spent: float = 0.0,
-    cancelled: Callable[[], bool] = lambda: False,
+    cancelled: Callable[[], bool] = never,
 ) -> Solution:
     """Drive the iteration until a stop rule ends it.
 

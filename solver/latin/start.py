@@ -21,7 +21,7 @@ from solver.reference.assembly import (
     assembled_stiffness,
     external_force,
 )
-from solver.reference.condensation import factored
+from solver.reference.glued_structure import factored
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.refusal import RefusedError, Words

@@ -67,14 +67,15 @@ class RodStiffness:
     Attributes
     ----------
     modulus
-        Stiffness of the rod around each pair, shape (n_pairs,), scaled; None is 1.
+        Stiffness of the rod around each pair, shape (n_pairs,), or one for all pairs,
+        scaled.
     elsewhere
         Factor on the paper's k of all rows that are not at contacts.
     on_cuts
         Further factor on the k of rows on cuts.
     """
 
-    modulus: Array | None = None
+    modulus: Array | float = 1.0
 
     elsewhere: ClassVar[float] = 1.0
     on_cuts: ClassVar[float] = 10.0
@@ -92,9 +93,7 @@ class RodStiffness:
         spacing = length / np.maximum(law.sizes - 1, 1)[pairs]
         stiffness = FRICTION_FACTOR * np.sqrt(length / spacing * parts)
         for rows in law.components[-1].sides:
-            k[rows] = stiffness * law.weights / spacing
-            if self.modulus is not None:
-                k[rows] *= self.modulus
+            k[rows] = stiffness * law.weights / spacing * self.modulus
 
 
 @dataclass(frozen=True, eq=False)

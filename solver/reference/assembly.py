@@ -17,6 +17,11 @@ class Interrupted(Exception):  # noqa: N818  # asked for by the caller, so no er
     """Interruption of a solver by its caller before the last instant."""
 
 
+def never() -> bool:
+    """Answer of a caller that interrupts nothing."""
+    return False
+
+
 def assembled_stiffness(problem: Problem) -> sparse.csr_array:
     """Stiffness K of the whole structure, shape (n_dofs, n_dofs), scaled."""
     # Equal substructures share one operator, which is taken apart once.

@@ -12,10 +12,10 @@ from collections.abc import Callable
 import numpy as np
 
 from solver.arrays import ROUNDING, Array, Flags
-from solver.discrete.contacts import carries
+from solver.discrete.contact_groups import carries
 from solver.discrete.problem import Problem
 from solver.laws import OPEN
-from solver.reference.assembly import Interrupted, NoReferenceError
+from solver.reference.assembly import Interrupted, NoReferenceError, never
 from solver.reference.condensation import Condensation
 from solver.reference.distance import broken_laws
 from solver.reference.instants import Instants
@@ -43,9 +43,7 @@ class IncrementalContact:
     tangential jump is prescribed, friction is that of `Problem.with_driven_friction`.
     """
 
-    def __init__(
-        self, problem: Problem, stop: Callable[[], bool] | None = None
-    ) -> None:
+    def __init__(self, problem: Problem, stop: Callable[[], bool] = never) -> None:
         """Condense a problem.
 
         Raises
@@ -72,7 +70,7 @@ class IncrementalContact:
         self,
         guess: States | None = None,
         max_systems: int | None = None,
-        stop: Callable[[], bool] | None = None,
+        stop: Callable[[], bool] = never,
     ) -> Reference:
         """Solve instant by instant, up to the first instant without solution.
 
@@ -120,7 +118,7 @@ class IncrementalContact:
         has_others = np.zeros(n_instants, dtype=bool)
         reached = np.zeros(n_instants, dtype=bool)
         for instant in range(n_instants):
-            if stop is not None and stop():
+            if stop():
                 raise Interrupted
             if max_systems is not None and instants.system.solutions >= max_systems:
                 break
@@ -139,7 +137,7 @@ class IncrementalContact:
                     return so_far
         return self._judged(instants, done, has_others, reached)
 
-    def _may_hold(self, instant: int, stop: Callable[[], bool] | None) -> bool:
+    def _may_hold(self, instant: int, stop: Callable[[], bool]) -> bool:
         """Check whether any contact forces balance the loads of an instant."""
         # One analysis of the whole path, when a first instant fails.
         if not self._is_analysed:

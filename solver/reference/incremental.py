@@ -27,6 +27,7 @@ from solver.reference.assembly import (
     NoReferenceError,
     assembled_stiffness,
     external_force,
+    never,
     points_dofs,
 )
 from solver.reference.condensation import LEFT_INSIDE
@@ -83,7 +84,7 @@ class IncrementalRod:
         self,
         guess: States | None,
         max_systems: int | None,
-        stop: Callable[[], bool] | None,
+        stop: Callable[[], bool],
     ) -> Reference:
         """Solve by the general solver, which can follow fast softening."""
         if self._general is None:
@@ -98,7 +99,7 @@ class IncrementalRod:
         self,
         guess: States | None = None,
         max_systems: int | None = None,
-        stop: Callable[[], bool] | None = None,
+        stop: Callable[[], bool] = never,
     ) -> Reference:
         """Solve instant by instant, as `IncrementalContact.march`, by statuses.
 
@@ -115,7 +116,7 @@ class IncrementalRod:
         minima: list[Minimum] = []
         balance, status, accumulated_slip = np.zeros((3, self._problem.n_dofs))
         for instant in range(self._problem.n_instants):
-            if stop is not None and stop():
+            if stop():
                 raise Interrupted
             if max_systems is not None and self._systems >= max_systems:
                 break
@@ -275,7 +276,7 @@ class IncrementalRod:
 Incremental = IncrementalRod | IncrementalContact
 
 
-def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
+def reference_of(problem: Problem, stop: Callable[[], bool] = never) -> Reference:
     """Solve a problem instant by instant, with the solver for its interfaces.
 
     `stop` is asked before each linear system, or each instant where these are small;
@@ -287,7 +288,7 @@ def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Re
 
 
 def incremental_solver(
-    problem: Problem, stop: Callable[[], bool] | None = None
+    problem: Problem, stop: Callable[[], bool] = never
 ) -> Incremental:
     """Prepare the solver for the interfaces of a problem.
 

@@ -2,7 +2,8 @@
 
 Where friction softens an instant may have several solutions. The solution that
 continues the instant before is followed while the load of the instant grows, in steps
-so small that no other solution branches off between their ends.
+so small that no other solution branches off between their ends
+(`solver.reference.branches`).
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.laws import OPEN
+from solver.reference.assembly import never
+from solver.reference.branches import SHORTEST_PART, beyond, followed
 from solver.reference.condensation import Condensation
 from solver.reference.newton import Newton
 from solver.reference.rules import (
@@ -29,17 +32,9 @@ PASSES = 30
 """Largest number of solutions of an instant that keep dependent jumps together."""
 TOGETHER = 1e-10
 """Force that still ties dependent jumps, as a share of the largest load."""
-FIRST_PART = 0.25
-"""Share of the load of an instant that is tried first where it is followed in parts."""
-SHORTEST_PART = 2.0**-12
-"""Share of the load of an instant within which the solution is lost, where it jumps."""
 SHORT_PART = 2.0**-4
-"""The same where friction does not change with slip: beyond it contacts rarely hold."""
-SLIDES = 100
-"""Largest number of slips up to the next solution, each with the friction that the slip
-before has left."""
-AT_REST = 1e-9
-"""Change of slips, as a share of the largest, at which they have come to rest."""
+"""Share of the load of an instant within which the solution is lost where friction does
+not change with slip: smaller parts rarely find more."""
 
 
 class Instants:
@@ -68,7 +63,7 @@ class Instants:
         rest: Array | None,
         guess: States | None,
         may_hold: Callable[[int], bool],
-        stop: Callable[[], bool] | None = None,
+        stop: Callable[[], bool] = never,
     ) -> None:
         """Start from rest at zero.
 
@@ -272,7 +267,7 @@ class Instants:
         shortest = SHORT_PART
         if rules.is_nonlinear:
             shortest = SHORTEST_PART
-        at, share = self._followed(
+        at, share = followed(
             lambda _: self._newton, at, (begin, right_sides), known, shortest
         )
         if share == 1.0:
@@ -286,134 +281,7 @@ class Instants:
         if not rules.softens:
             newton = self._newton
             return newton.follow(at, right_sides, newton.approach(at, right_sides))
-        return self._beyond(at, (begin.towards(right_sides, share), right_sides), known)
-
-    def _followed(
-        self,
-        newton_at: Callable[[float], Newton],
-        at: InstantSolution,
-        right_sides: tuple[RightSides, RightSides],
-        known: list[States],
-        shortest: float = SHORTEST_PART,
-    ) -> tuple[InstantSolution, float]:
-        """Follow a solution from some right-hand sides to others in steps.
-
-        Parameters
-        ----------
-        newton_at
-            Newton's method at a share of the change from one to the other.
-        at
-            Solution with the first right-hand sides.
-        right_sides
-            The right-hand sides at both ends.
-        known
-            States to try, shape (n,) each.
-        shortest
-            Length of a step, as a share, at which the solution is given up.
-
-        Returns
-        -------
-        The last solution found, and at which share.
-        """
-        begin, end = right_sides
-        # Parts grow while they succeed and shrink where they fail.
-        share = 0.0
-        length = FIRST_PART
-        while share < 1.0:
-            target = min(share + length, 1.0)
-            part = begin.towards(end, target)
-            following = newton_at(target).follow(at, part, at.guesses(known))
-            if following is not None:
-                at = following
-                share = target
-                length = 2.0 * length
-            elif length > shortest:
-                length *= 0.25
-            else:
-                break
-        return at, share
-
-    def _beyond(
-        self,
-        at: InstantSolution,
-        right_sides: tuple[RightSides, RightSides],
-        known: list[States],
-    ) -> InstantSolution | None:
-        """Seek a stable solution beyond the end of a branch.
-
-        With the friction that slip so far has left the next slip is larger, and so on
-        up to the nearest solution; Newton's method is tried once the same contacts slip
-        again. Where the bound is known each slip lowers the energy (convex-concave
-        procedure: Yuille, Rangarajan, Neural Comput. 15, 2003), so slips come to rest.
-        They may come to rest where the structure is not stable, as on a ridge between
-        two slopes: then the solution is left down one of them. The last resort is the
-        solution with the friction that is left after any slip.
-
-        `known` are states to try, shape (n,) each.
-        """
-        begin, end = right_sides
-        fallen = np.abs(at.slip)
-        for number in range(SLIDES + 1):
-            is_last = number == SLIDES
-            before = at
-            falls = np.abs(at.slip)
-            # The last resort: friction as after any slip.
-            if is_last:
-                falls = np.full_like(falls, self._rules.slip_factor.slips[-1])
-            slid = self._slid(at, (begin, end), (fallen, falls), known)
-            if slid is None:
-                return None
-            at = slid
-            begin = end
-            fallen = falls
-            if not is_last and not np.array_equal(at.states, before.states):
-                continue
-            near = self._newton.seek_from(at, end)
-            if near is None:
-                continue
-            if self._newton.stability.is_stable(near, end):
-                return near
-            self.has_others = True
-            if _are_equal(at.slip, before.slip):
-                at = self._newton.stability.leave(near, end)
-        return None
-
-    def _slid(
-        self,
-        at: InstantSolution,
-        right_sides: tuple[RightSides, RightSides],
-        fallen: tuple[Array, Array],
-        known: list[States],
-    ) -> InstantSolution | None:
-        """Follow a solution to other right-hand sides with friction of given slips.
-
-        Parameters
-        ----------
-        at
-            Solution with the first right-hand sides.
-        right_sides
-            The right-hand sides at both ends.
-        fallen
-            Slips up to which friction has fallen at both ends, shape (n,) each, scaled.
-        known
-            States to try, shape (n,) each.
-        """
-        before, after = fallen
-        newton = self._newton.with_friction_left(after)
-        slid = newton.follow(at, right_sides[1], at.guesses(known))
-        if slid is not None:
-            return slid
-
-        def newton_at(share: float) -> Newton:
-            return self._newton.with_friction_left(before + share * (after - before))
-
-        slid, share = self._followed(newton_at, at, right_sides, known)
-        if share == 1.0:
-            return slid
-        return newton.follow(at, right_sides[1], newton.approach(at, right_sides[1]))
-
-
-def _are_equal(slip: Array, other: Array) -> bool:
-    """Check whether slips, (n,), are equal up to the accuracy of a solution."""
-    size = np.abs(other).max(initial=0.0)
-    return bool(np.abs(slip - other).max(initial=0.0) <= AT_REST * size)
+        further = (begin.towards(right_sides, share), right_sides)
+        found, meets_others = beyond(self._newton, rules, at, further, known)
+        self.has_others = self.has_others or meets_others
+        return found

@@ -26,6 +26,7 @@ from solver.reference.assembly import (
     NoReferenceError,
     external_force,
     jumps,
+    never,
 )
 from solver.reference.rules import rules_of
 
@@ -159,7 +160,7 @@ class _Program:
             raise NoReferenceError(f"limit analysis has no answer: {program.message}")
         return program
 
-    def holds(self, instant: int, load: Array, stop: Callable[[], bool] | None) -> bool:
+    def holds(self, instant: int, load: Array, stop: Callable[[], bool]) -> bool:
         """Check whether contact certainly balances a load, (n_motions,).
 
         Raises
@@ -169,7 +170,7 @@ class _Program:
         NoReferenceError
             If HiGHS finds no answer.
         """
-        if stop is not None and stop():
+        if stop():
             raise Interrupted
         step = sparse.csr_array(load[:, None])
         balanced = self.solve(instant, np.zeros(len(load)), step)
@@ -178,9 +179,7 @@ class _Program:
         return float(balanced.x[-1]) >= SURE
 
 
-def collapse_of(
-    problem: Problem, stop: Callable[[], bool] | None = None
-) -> Collapse | None:
+def collapse_of(problem: Problem, stop: Callable[[], bool] = never) -> Collapse | None:
     """Collapse of a structure on its load path; None if it carries all loads.
 
     `stop` is asked before each linear program, one an instant.
@@ -209,7 +208,7 @@ def collapse_of(
         # The load stands still: what held an instant before holds on.
         if not step.nnz and instant:
             continue
-        if stop is not None and stop():
+        if stop():
             raise Interrupted
         balanced = program.solve(instant, before, step)
         share = 0.0

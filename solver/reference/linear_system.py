@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import ROUNDING, Array, Indices, as_slice, largest_size
-from solver.reference.assembly import Interrupted
+from solver.reference.assembly import Interrupted, never
 from solver.reference.condensation import Condensation
 from solver.reference.factors import Factors, UpdatedFactors
 from solver.reference.rules import HELD, Increment, RightSides, States
@@ -25,13 +25,14 @@ LOOSE = 1e-14
 """Pivot, as a share of the largest stiffness of all jumps, below which a motion is
 free."""
 MANY = 200
-"""Unknowns from which on factors are updated: those of fewer are made again as soon."""
+"""Number of unknowns from which on factors are updated: smaller systems are factored
+again in the same time."""
 CHANGED = 6
 """Factors are updated where at most one unknown in this number comes or goes: from step
 to step it is one in a hundred."""
 FAR = 100.0
-"""Rigid motion over deformation, the largest of both, from which on the digits of the
-deformation count by themselves."""
+"""Ratio of the largest rigid motion to the largest deformation from which on forces are
+found from the deformation alone, as their sum has lost its digits."""
 FEW = 4
 """Rows of S are gathered where they are at most one in this number; else all of S is
 read."""
@@ -91,7 +92,7 @@ class LinearSystem:
         condensed: Condensation,
         stiffness: Array,
         gauge: Array,
-        stop: Callable[[], bool] | None = None,
+        stop: Callable[[], bool] = never,
     ) -> None:
         self._stiffness = stiffness
         self._gauge = gauge
@@ -146,7 +147,7 @@ class LinearSystem:
 
     def __call__(self, states: States, right_sides: RightSides) -> Increment:
         """Solve for the step from the instant before, with states of shape (n,)."""
-        if self.stop is not None and self.stop():
+        if self.stop():
             raise Interrupted
         if self._states is None or not np.array_equal(states, self._states):
             self._factor(states)

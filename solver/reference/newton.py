@@ -25,6 +25,7 @@ import numpy as np
 
 from solver.arrays import ROUNDING, Array, Flags, Indices
 from solver.laws import OPEN
+from solver.reference.assembly import never
 from solver.reference.condensation import Condensation
 from solver.reference.friction_over_slip import FrictionOverSlip
 from solver.reference.linear_system import LinearSystem
@@ -82,7 +83,7 @@ class Newton:
     """
 
     def __init__(
-        self, condensed: Condensation, stop: Callable[[], bool] | None = None
+        self, condensed: Condensation, stop: Callable[[], bool] = never
     ) -> None:
         self.system = system_of(condensed, stop)
         self._condensed = condensed
@@ -179,16 +180,12 @@ class Newton:
         no_motions = condensed.gauge[:, :0]
         return LinearSystem(condensed, stiffness, no_motions, self.system.stop)
 
-    def seek_from(
-        self, at: InstantSolution, right_sides: RightSides
-    ) -> InstantSolution | None:
-        """Seek a solution, stable or not, from fields that are no solution."""
-        return self.seek(self.system, at, right_sides)
-
     def seek(
         self, system: LinearSystem, guess: InstantSolution, right_sides: RightSides
     ) -> InstantSolution | None:
         """Seek states and slips from those of a guess; None if the states cycle.
+
+        The solution need not be stable, and the guess need not be a solution.
 
         A front of slip, like that along a belt, may move by a jump a step. States that
         leave bodies free mostly wander: springs hold these at less cost.

@@ -14,6 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from solver.arrays import Array, largest_size
+from solver.reference.assembly import never
 from solver.reference.condensation import Condensation
 from solver.reference.factors import Factors
 from solver.reference.linear_system import LinearSystem, Solved
@@ -28,7 +29,7 @@ gives back the digits that scaling lost."""
 
 
 def system_of(
-    condensed: Condensation, stop: Callable[[], bool] | None = None
+    condensed: Condensation, stop: Callable[[], bool] = never
 ) -> LinearSystem:
     """Linear system of a condensed structure, chosen by the softness of springs.
 

@@ -13,7 +13,8 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.rods.rods import End, Rods
+from solver.discrete.rods.end import End
+from solver.discrete.rods.rods import Rods
 from solver.discrete.substructure import tributary
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
@@ -48,8 +49,6 @@ DONE = {
 }
 """Words on loads along the bar by the setting of their path: a clause, and words for a
 positive and a negative load."""
-SLACK = 1e-9
-"""Share by which rounding may exceed a limit."""
 BAR = SettingGroup("Bar")
 ENDS = SettingGroup("Ends")
 KINDS = ("held", "spring", "pulled", "free")
@@ -305,7 +304,7 @@ class BarSettings(Settings):
         factors = [1.0]
         if not isinstance(table, str):
             factors = [factor for _, factor in table]
-        if max(factors) > LARGEST_CONTRAST * (1.0 + SLACK) * min(factors):
+        if max(factors) > LARGEST_CONTRAST * (1.0 + shared.SLACK) * min(factors):
             raise self.refusal(
                 "section_profile",
                 f"a largest factor of at most {plain(LARGEST_CONTRAST)} times the "
@@ -415,7 +414,7 @@ class BarSettings(Settings):
         worst = int(np.argmax(total - largest))
         force = float(total[worst])
         capacity = float(largest[worst])
-        if force >= (1.0 - SLACK) * capacity:
+        if force >= (1.0 - shared.SLACK) * capacity:
             raise self.refusal(
                 "left_end",
                 f"held, or spring, where forces reach {plain(force)} N "

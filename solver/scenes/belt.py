@@ -26,8 +26,6 @@ from solver.settings.scene import Icon
 
 STEEPEST = 30.0
 """Largest angle by which the guide may turn over an element, degrees."""
-SLACK = 1e-9
-"""Share by which rounding may exceed a limit."""
 PLACES = 201
 """Points along the guide at which closed forms are drawn."""
 
@@ -326,7 +324,7 @@ class BeltSettings(PlaneSettings):
             return
         strongest = self.friction * self.law.largest_factor
         ratio = replace(self.capstan, friction=strongest).ratio
-        largest = ratio * (1.0 + SLACK)
+        largest = ratio * (1.0 + shared.SLACK)
         if np.all(pull <= largest * tail) and np.all(tail <= largest * pull):
             return
         raise self.refusal(

@@ -49,6 +49,8 @@ BY_UNIT = {
     "Pa": "traction",
 }
 """Names of the value of a path by its unit; of all other units it is "force"."""
+SLACK = 1e-9
+"""Share by which rounding may exceed a limit."""
 AGAIN = 2
 """Smallest number of times that a load comes and goes "again and again"."""
 
@@ -165,7 +167,7 @@ def sized_path(
     group
         Heading of both settings.
     record
-        Fields of `About` of the value, and its title.
+        Title and further `SettingProperties` of the value.
     """
     name = f"{what[:1].upper()}{what[1:]}"
     entries = {"title": name, "unit": unit, "path": path} | record

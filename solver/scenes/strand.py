@@ -12,7 +12,8 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.rods.rods import End, Rods
+from solver.discrete.rods.end import End
+from solver.discrete.rods.rods import Rods
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.pulled_bar import broken_wire
 from solver.refusal import plain

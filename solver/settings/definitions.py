@@ -179,8 +179,9 @@ def is_logarithmic(definition: Any) -> bool:
 class SettingGroup:
     """Heading of a group of settings, with a method for each kind of definition.
 
-    Every definition has a help text. Further arguments are fields of `About`, and
-    `title`, the label of a widget that does not show the name of the setting.
+    Every definition has a help text. Further arguments are fields of
+    `SettingProperties`, and `title`, the label of a widget that does not show the name
+    of the setting.
     """
 
     name: str

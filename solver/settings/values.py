@@ -42,6 +42,10 @@ class SettingError(RefusedError):
     """A refused setting."""
 
 
+Refuse = Callable[[str], SettingError]
+"""Function from a remedy to the refusal of a value."""
+
+
 def allowed(definition: Parameter) -> str:
     """Description of the allowed values of a setting."""
     if isinstance(definition, CurveParameter):
@@ -153,10 +157,6 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
     if value != int(value):
         raise refuse("write a whole number")
     return int(value)
-
-
-Refuse = Callable[[str], SettingError]
-"""Refusal of a value, made from the remedy."""
 
 
 def _refusing(definition: Parameter, name: str, value: object) -> Refuse:

@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import param
 import scipy
 
 from solver.arrays import Array
@@ -16,16 +15,12 @@ from solver.latin import Ending
 from solver.latin.end.status_step import states_of
 from solver.reference.rules import States
 from solver.refusal import RefusedError
-from solver.settings.definitions import is_logarithmic, properties_of
 from solver.settings.scene import Settings
-from solver.settings.values import SettingError
+from solver.study.fitted_settings import FittedScales
 from solver.study.measured_loop import LoopComparison, MeasuredLoop, rms
-from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.finished import FinishedRun
+from solver.study.scene_run import finished_run
 
-NOT_FITTED = "Method", "Stop", "Decomposition"
-"""Groups of settings that do not change the solution."""
-FARTHEST = math.log(1e6)
-"""Largest distance in z of a setting from its start."""
 COARSE = math.log(3.0)
 """Step in z by which each setting is first tried alone."""
 FAR = math.log(1e3)
@@ -44,48 +39,6 @@ FEW_STEPS = 10
 """Largest number of evaluations where only the misfit is asked for."""
 STEP = 1e-4
 """Step in z of the finite differences of the method."""
-
-
-def fittable(settings: Settings) -> list[str]:
-    """Names of the settings that may be fitted: numbers that change the solution."""
-    return [name for name in settings.definitions() if not _why_not(settings, name)]
-
-
-def _why_not(settings: Settings, name: str) -> str:
-    """Reason why a setting cannot be fitted, or ""."""
-    definition = settings.definitions().get(name)
-    if definition is None:
-        return "there is no such setting"
-    if not isinstance(definition, param.Number):
-        return "it is no number"
-    if isinstance(definition, param.Integer):
-        return "it counts, and has no values in between"
-    if not settings.applies(name):
-        return "it does nothing with the other settings as they are"
-    if properties_of(definition).group in NOT_FITTED or name == "duration":
-        return "it does not change what a run finds"
-    return ""
-
-
-def scale_of(settings: Settings, name: str) -> tuple[float, float, float, float]:
-    """Start and size of the scale of a fitted setting, and its bounds, in SI.
-
-    The size is 0 of a logarithmic scale. A setting that is no number, or does not
-    change the solution, is refused.
-    """
-    if reason := _why_not(settings, name):
-        can = ", ".join(fittable(settings))
-        raise SettingError("fitted setting", name, can, f"choose another: {reason}")
-    definition = settings.definitions()[name]
-    value = getattr(settings, name)
-    low, high = definition.bounds
-    # Positive quantities, as stiffnesses, span decades, and their errors are factors.
-    if low >= 0.0 and value > 0.0:
-        return value, 0.0, low, high
-    if is_logarithmic(definition):
-        can = f"a value above 0, to begin with, as {definition.softbounds[0]:g}"
-        raise SettingError(name, value, can, "set it")
-    return value, abs(value) or float(np.ptp(definition.softbounds)), low, high
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,10 +85,8 @@ class ComparedRuns:
 
     Attributes
     ----------
-    in_decades
-        Whether the scale of a setting is logarithmic, shape (p,).
-    bounds
-        Smallest and largest z of the settings, shape (2, p).
+    scales
+        Scales z of the settings.
     first, nearest
         First run, and the nearest one so far.
     count
@@ -149,12 +100,7 @@ class ComparedRuns:
         names: Sequence[str],
         watch: Callable[[int, ComparedRun], object],
     ) -> None:
-        self.names = tuple(names)
-        scales = np.array([scale_of(settings, name) for name in names])
-        self._start, self._size, *self._ends = scales.T
-        self.in_decades = self._size == 0.0
-        ends = [self._on_scale(end) for end in self._ends]
-        self.bounds = np.clip(ends, -FARTHEST, FARTHEST)
+        self.scales = FittedScales(settings, names)
         # Differences of runs must not be those of their stop rules.
         accuracy = min(settings.accuracy, ACCURACY)
         self._settings = settings.replace(finish="at-once", accuracy=accuracy)
@@ -165,28 +111,6 @@ class ComparedRuns:
         self.count = 0
         self.first = self.nearest = self.run(np.zeros(len(names)))
 
-    def _on_scale(self, values: Array) -> Array:
-        """Scaled settings z, shape (p,), from values in SI."""
-        # Both scales are computed for all settings; one of them is not used.
-        with np.errstate(divide="ignore", invalid="ignore"):
-            in_logarithm = np.log(values / self._start)
-            in_size = (values - self._start) / self._size
-        return np.asarray(np.where(self.in_decades, in_logarithm, in_size))
-
-    def values(self, z: Array) -> Array:
-        """Values of the settings at z, shape (p,), in SI."""
-        with np.errstate(over="ignore"):
-            in_logarithm = self._start * np.exp(z)
-            in_size = self._start + self._size * z
-        values = np.where(self.in_decades, in_logarithm, in_size)
-        return np.asarray(np.clip(values, *self._ends))
-
-    def changes(self, z: Array) -> dict[str, float]:
-        """Values of the settings at z, (p,), by name, in SI, rounded to 12 digits."""
-        # A difference in the last bits would be another run, and another place.
-        values = [float(f"{value:.12g}") for value in self.values(z)]
-        return dict(zip(self.names, values, strict=True))
-
     def run(self, z: Array) -> ComparedRun:
         """Run at z, shape (p,).
 
@@ -195,7 +119,7 @@ class ComparedRuns:
         RefusedError
             Where the settings do not fit together, or the run does not converge.
         """
-        changes = self.changes(z)
+        changes = self.scales.changes(z)
         settings = self._settings.replace(**changes)
         finished = finished_run(
             settings, errors=False, indicators=False, before=self._before
@@ -238,7 +162,7 @@ class ComparedRuns:
         z
             Place, shape (p,).
         step
-            Step in z. Steps go both ways within bounds; the smallest one goes one way.
+            Step in z, both ways where bounds let it; the default one goes one way.
         directions
             Directions in z, shape (q, p); by default those of the settings.
         """
@@ -249,7 +173,7 @@ class ComparedRuns:
 
     def _derivative(self, z: Array, step: float, along: Array) -> Array:
         """Derivative of differences, (n_rows,), at z, (p,), along a direction, (p,)."""
-        moves = [move for move in (step, -step) if self.holds(z + move * along)]
+        moves = [move for move in (step, -step) if self.scales.holds(z + move * along)]
         # A tiny step is straight enough one way, and one run fewer.
         if step == STEP:
             moves = moves[:1]
@@ -263,11 +187,6 @@ class ComparedRuns:
         last = max(known)
         return (known[last] - known[first]) / ((last - first) or 1.0)
 
-    def holds(self, z: Array) -> bool:
-        """Check whether z, (p,), lies within the bounds of all settings."""
-        low, high = self.bounds
-        return bool(((low <= z) & (z <= high)).all())
-
     def misfit(self, z: Array) -> float:
         """Sum of the squared differences at z, (p,); infinite without a run."""
         found = float(np.sum(self.differences(z) ** 2))
@@ -280,7 +199,7 @@ class ComparedRuns:
 
         0 where no such run converges.
         """
-        settings = self._settings.replace(**self.changes(z))
+        settings = self._settings.replace(**self.scales.changes(z))
         with contextlib.suppress(RefusedError):
             # Half the size: what changes is what the mesh hides of the loop.
             finer = {name: 2 * getattr(settings, name) for name in settings.MESH}
@@ -296,7 +215,7 @@ class ComparedRuns:
 
     def coarse(self) -> Array:
         """Initial z, shape (p,): by large steps in one setting after another."""
-        best = np.zeros(len(self.names))
+        best = np.zeros(len(self.scales.names))
         for setting in range(len(best)):
             middle = best
             # Both ways from the middle, as one side may fall first and rise later.
@@ -321,7 +240,7 @@ class ComparedRuns:
         step
             Step in z.
         """
-        low, high = self.bounds[:, setting]
+        low, high = self.scales.bounds[:, setting]
         moved = middle
         while best is middle or moved is best:
             at = moved[setting] + step
@@ -350,7 +269,7 @@ class ComparedRuns:
             lambda at: np.concatenate([self.differences(at), pull @ at]),
             z,
             jac=lambda at: np.concatenate([self.jacobian(at), pull]),
-            bounds=self.bounds,
+            bounds=self.scales.bounds,
             xtol=FINE,
             ftol=FINE,
             gtol=FINE**2,
@@ -386,7 +305,7 @@ class ComparedRuns:
         def differences(moves: Array) -> Array:
             """Differences, (n_rows,), after moves, (p - 1,); NaN beyond a bound."""
             at = place(moves)
-            if not self.holds(at):
+            if not self.scales.holds(at):
                 return np.full(len(self.first.differences), np.nan)
             return self.differences(at)
 

@@ -31,11 +31,11 @@ from numpy.typing import NDArray
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.problem import Problem
 from solver.files.columns import TableColumn
-from solver.files.disk import Refuse
 from solver.files.tables import Reading, Table
 from solver.files.units import size_in
 from solver.reference.distance import Fields, determinate_forces
 from solver.settings.scene import Settings
+from solver.settings.values import Refuse
 
 FRICTION = "friction force"
 DISPLACEMENT = "displacement"

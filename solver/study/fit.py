@@ -30,7 +30,8 @@ from scipy.linalg import null_space, qr
 from solver.arrays import Array, Flags
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError
-from solver.study.compared_runs import ComparedRun, ComparedRuns, fittable
+from solver.study.compared_runs import ComparedRun, ComparedRuns
+from solver.study.fitted_settings import fittable
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.profile_likelihood import (
     BROAD,
@@ -174,8 +175,8 @@ def fit(
     z = _near_start(valley, blind)
     lower, upper = _margins(valley, profiles)
     return Fit(
-        settings=settings.replace(**runs.changes(z)),
-        names=runs.names,
+        settings=settings.replace(**runs.scales.changes(z)),
+        names=runs.scales.names,
         lower=lower,
         upper=upper,
         correlation=_correlation(runs.jacobian(z, BROAD), blind, is_known),
@@ -191,7 +192,7 @@ def fit(
 def _check_rows(runs: ComparedRuns, measured: MeasuredLoop) -> None:
     """Refuse a loop with fewer rows during the run than settings need."""
     rows = len(runs.first.differences)
-    count = len(runs.names)
+    count = len(runs.scales.names)
     if rows <= count + 1:
         can = f"at least {count + 2} rows for {count} settings"
         remedy = f"{rows} are in the run"
@@ -200,7 +201,7 @@ def _check_rows(runs: ComparedRuns, measured: MeasuredLoop) -> None:
 
 def _explored(runs: ComparedRuns) -> tuple[Valley, list[LikelihoodProfile]]:
     """Valley of the nearest run, and the profiles of all settings."""
-    settings = np.eye(len(runs.names))
+    settings = np.eye(len(runs.scales.names))
     # A slight pull, so that the least squares have one solution.
     z = runs.solve(runs.coarse(), LOOSE * settings)
     # The last round seeks no lower place, so that it ends.
@@ -252,8 +253,8 @@ def _margins(valley: Valley, profiles: list[LikelihoodProfile]) -> tuple[Array, 
     """Lower and upper ends of settings by their profiles, (p,) each, in SI."""
     below, above = np.array([profile.ends() for profile in profiles]).T
     with np.errstate(invalid="ignore"):
-        lower = valley.runs.values(valley.z - below)
-        upper = valley.runs.values(valley.z + above)
+        lower = valley.runs.scales.values(valley.z - below)
+        upper = valley.runs.scales.values(valley.z + above)
     return (
         np.where(np.isfinite(below), lower, -np.inf),
         np.where(np.isfinite(above), upper, np.inf),
@@ -333,10 +334,10 @@ def _combination(
     runs = valley.runs
     parts = np.flatnonzero(powers)
     value = math.nan
-    if runs.in_decades[parts].all():
-        value = float(np.prod(runs.values(valley.z) ** powers))
+    if runs.scales.in_decades[parts].all():
+        value = float(np.prod(runs.scales.values(valley.z) ** powers))
     return Combination(
-        powers={runs.names[part]: float(powers[part]) for part in parts},
+        powers={runs.scales.names[part]: float(powers[part]) for part in parts},
         value=value,
         lower=value * math.exp(-below),
         upper=value * math.exp(above),

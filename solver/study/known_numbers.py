@@ -10,13 +10,14 @@ import numpy as np
 import scipy
 
 from solver.arrays import Array
-from solver.discrete.contacts import NO_SLIP
+from solver.discrete.contact_groups import NO_SLIP
 from solver.discrete.plane.makers.band import Band
 from solver.discrete.probes import LoopFields, reaction, reaction_moment
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
 from solver.discrete.structure import Loop
 from solver.latin import Solution
+from solver.laws import Contact
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
 from solver.reference.closed_forms.fluid_driven_slip import (
     fronts,
@@ -128,22 +129,29 @@ def _half_plane(answer: SolvedCase, total: float) -> HalfPlane:
     return HalfPlane(total, settings.radius, modulus)
 
 
-def _points(answer: SolvedCase, force: Array) -> tuple[Array, Array]:
-    """Tributary lengths of a support's points, and distances from a force's centre.
+def _points(law: Contact, force: Array) -> tuple[Array, Array]:
+    """Tributary lengths of a contact's points, and distances from a force's centre.
 
     The force has shape (n_points,), and so have both results, m.
     """
-    law = answer.problem.contacts["support"]
     middle = law.positions @ force / force.sum()
     return law.by_point(law.weights[:, None])[:, 0], law.positions - middle
 
 
 def pressed_parabola(answer: SolvedCase) -> Iterator[Number]:
-    """Largest pressure, and half-width by the second moment of the pressure."""
+    """Largest pressure, and half-width of contact, of a cylinder on a half-plane."""
     force = answer.support[0][:, -1]
-    lengths, distances = _points(answer, force)
     exact = _half_plane(answer, float(force.sum()))
-    yield "largest pressure", "Pa", exact.peak, (force / lengths).max()
+    yield from _pressed(answer.problem.contacts["support"], force, exact)
+
+
+def _pressed(law: Contact, force: Array, exact: HalfPlane) -> Iterator[Number]:
+    """Largest pressure, and half-width by the second moment of the pressure.
+
+    The pressing force of the points of a contact has the shape (n_points,), N/m.
+    """
+    lengths, distances = _points(law, force)
+    yield "largest pressure", "Pa", exact.peak, float((force / lengths).max())
     # Half the width is twice the root of the second moment of an elliptic pressure.
     second = float(force @ distances**2 / force.sum())
     yield "half-width of contact", "m", exact.half_width, 2.0 * float(np.sqrt(second))
@@ -163,7 +171,7 @@ def _peak_of_shear(answer: SolvedCase, first: int) -> Iterator[Number]:
     friction = answer.settings.friction
     pressed = np.abs(pressing[:, first])
     held = np.abs(shear[:, first])
-    lengths, distances = _points(answer, pressed)
+    lengths, distances = _points(answer.problem.contacts["support"], pressed)
     exact = _half_plane(answer, float(pressed.sum()))
     share = float(held.sum()) / (friction * float(pressed.sum()))
     stuck = _stick_half_width(friction, distances, pressed, held)
@@ -382,15 +390,8 @@ def pressed_wires(answer: SolvedCase) -> Iterator[Number]:
             assert pressing is not None
             forces[joint.name] = pressing[:, -1]
     name = max(forces, key=lambda name: float(forces[name].sum()))
-    force = forces[name]
-    law = answer.problem.contacts[name]
-    exact = settings.hertz(float(force.sum()))
-    lengths = law.by_point(law.weights[:, None])[:, 0]
-    yield "largest pressure", "Pa", exact.peak, float((force / lengths).max())
-    distances = law.positions - law.positions @ force / force.sum()
-    # Half the width is twice the root of the second moment of an elliptic pressure.
-    second = float(force @ distances**2 / force.sum())
-    yield "half-width of contact", "m", exact.half_width, 2.0 * float(np.sqrt(second))
+    exact = settings.hertz(float(forces[name].sum()))
+    yield from _pressed(answer.problem.contacts[name], forces[name], exact)
 
 
 def moved_end(answer: SolvedCase) -> Iterator[Number]:

@@ -13,22 +13,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from solver.files.saved import (
+from solver.files.saved import dump, scene_settings
+from solver.files.toml_files import (
     check_controls,
     check_keys,
-    dump,
     fields_in,
     placed,
     read_toml,
     require,
-    scene_settings,
 )
 from solver.refusal import is_number
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError
 from solver.study.quantities import reading
-from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import Quantity
+from solver.study.scene_run import finished_run
 
 SUBJECTS = "mechanics", "method"
 OF_CHECKPOINT = {

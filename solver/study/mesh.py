@@ -15,8 +15,8 @@ import numpy as np
 
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError
-from solver.study.quantities.finished import finished_run
 from solver.study.quantities.quantity import Quantity
+from solver.study.scene_run import finished_run
 
 SAFETY = 1.25
 """Roache's factor on what is still missing, for three meshes."""

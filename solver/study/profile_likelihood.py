@@ -197,7 +197,7 @@ class Valley:
         self.z = z
         self.minimum = runs.misfit(z)
         self._seeks = seeks
-        self._bounds = runs.bounds
+        self._bounds = runs.scales.bounds
         # The noise is what the fit leaves of the differences.
         rows = len(runs.first.differences)
         free = rows - len(z)

@@ -6,14 +6,9 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from solver.study.page import (
-    aligned,
-    line_of,
-    text_of,
-    write_csv,
-    write_page,
-)
-from solver.study.stability import JUDGES, MEANING, Row, passed
+from solver.study.page import aligned, line_of, text_of, write_csv, write_page
+from solver.study.stability import Row, passed
+from solver.study.verdicts import JUDGES, MEANING
 
 FILES = "stability.csv", "stability.html"
 COLUMNS = (

@@ -9,15 +9,14 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-from solver.files.saved import (
+from solver.files.saved import head_of
+from solver.files.toml_files import (
     check_controls,
     check_keys,
     fields_in,
-    format_in,
     placed,
     read_toml,
     require,
-    scene_settings,
 )
 from solver.settings.definitions import properties_of
 from solver.settings.scene import Icon, Settings
@@ -124,9 +123,8 @@ def case_from_file(path: Path) -> Case:
     """
     with placed(path.name):
         values = read_toml(path, "case")
-        format_in(values)
-        kind = scene_settings(values.pop("scene", None))
         entries = values.pop("case", None)
+        kind, _ = head_of(values)
         if not isinstance(entries, dict):
             raise SettingError(
                 "case", entries, "a table", "write [case] below the settings"

@@ -34,7 +34,7 @@ from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from app.worker.sampling import Sampler
 from solver.scenes import discretise
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 from solver.study.trade_case import Case
 
 each = pytest.mark.parametrize("case", CASES.values(), ids=list(CASES))

@@ -24,8 +24,8 @@ from solver.study.page import (
     PlotSection,
     write_page,
 )
+from solver.study.sweep.charts import chart_of
 from solver.study.sweep.plan import Row
-from solver.study.sweep.report import chart_of
 
 X = np.array([1.0, 2.0, 3.0])
 PANEL = Panel(

@@ -23,7 +23,7 @@ from app.messages import Needs, Order, Ready, Start
 from app.state import PageState, default_settings
 from app.worker.sampling import Sampler
 from solver.scenes import discretise
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 LESSON = "how-fast-how-big"
 Callback = Callable[[], Any]

@@ -15,7 +15,8 @@ from app.worker.geometry import MOST_POINTS
 from app.worker.sampling import MOST_INSTANTS, Sampler
 from solver.files.amounts import number
 from solver.scenes import CATALOGUE
-from solver.study.quantities.finished import FinishedRun, figures_of, finished_run
+from solver.study.quantities.finished import FinishedRun, figures_of
+from solver.study.scene_run import finished_run
 
 
 def shown(scene: str, needs: Needs, **values: Any) -> tuple[FinishedRun, Frame]:

@@ -29,7 +29,7 @@ from app.worker.sampling import Sampler
 from solver.scenes import discretise
 from solver.study.lessons import Lesson
 from solver.study.quantities import reading
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 each = pytest.mark.parametrize("lesson", LESSONS.values(), ids=list(LESSONS))
 NAME = "how-fast-how-big"

@@ -18,7 +18,7 @@ from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.settings.scene import Settings
 from solver.study.measured_loop import MeasuredLoop
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 from solver.study.table_use import Use
 
 

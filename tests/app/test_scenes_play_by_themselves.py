@@ -16,7 +16,7 @@ from app.state import PageState, Selection, default_settings
 from app.transport import Transport
 from app.worker.sampling import Sampler
 from solver.scenes import discretise
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 
 class Document:

@@ -17,7 +17,7 @@ from scipy.optimize import minimize
 
 from solver.arrays import Array
 from solver.files.saved import scene_settings
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 AT_BOUND = 1e-9
 STEPS = 3000

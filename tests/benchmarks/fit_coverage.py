@@ -23,7 +23,7 @@ from solver.scenes.bar import BarSettings
 from solver.settings.scene import Settings
 from solver.study.fit import Fit, fit
 from solver.study.measured_loop import MeasuredLoop
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 COMPLIANT = {"friction_law": "compliant"}
 KINDS: dict[tuple[str, ...], dict[str, str]] = {

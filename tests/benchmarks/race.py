@@ -36,7 +36,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.scene import Settings
 from solver.study.measured_times import seconds_of
-from solver.study.quantities.finished import warm_up
+from solver.study.scene_run import warm_up
 from solver.study.sweep.executors import ONE_THREAD, machine
 
 GOAL = 0.01

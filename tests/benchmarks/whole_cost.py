@@ -19,7 +19,7 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.scene import Settings
-from solver.study.quantities.finished import finished_run, warm_up
+from solver.study.scene_run import finished_run, warm_up
 from solver.study.sweep.executors import ONE_THREAD, machine
 
 BY_DEFAULT: list[tuple[str, dict[str, Any]]] = [(scene, {}) for scene in CATALOGUE]

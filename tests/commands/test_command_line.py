@@ -199,7 +199,7 @@ def test_interrupts_end_a_command_with_a_line_and_their_code(
     def fail(*given, **options):
         raise trouble
 
-    monkeypatch.setattr("solver.commands.cli.solve", fail)
+    monkeypatch.setattr("solver.commands.single_run.solve", fail)
     assert main(["run", "bar", *SMALL]) == code
     (line,) = capsys.readouterr().err.splitlines()
     assert message in line
@@ -270,7 +270,7 @@ def test_a_fault_of_the_engine_is_no_lack_of_memory(monkeypatch):
     def fail(*given, **options):
         raise RuntimeError("of another kind")
 
-    monkeypatch.setattr("solver.commands.cli.solve", fail)
+    monkeypatch.setattr("solver.commands.single_run.solve", fail)
     with pytest.raises(RuntimeError, match="of another kind"):
         main(["run", "bar", *SMALL])
 

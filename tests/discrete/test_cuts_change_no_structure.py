@@ -19,7 +19,8 @@ from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.plane.rectangles.stack_bodies import bodies_of, ends_along
 from solver.discrete.problem import Problem
 from solver.discrete.rods.cut_rods import CutRods
-from solver.discrete.rods.rods import End, Rods
+from solver.discrete.rods.end import End
+from solver.discrete.rods.rods import Rods
 from solver.discrete.schur_complement import SchurComplement
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.incremental import reference_of

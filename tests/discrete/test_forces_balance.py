@@ -28,9 +28,7 @@ from solver.reference.assembly import external_force
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.settings.scene import Settings
-from solver.study.quantities.finished import (
-    finished_run,
-)
+from solver.study.scene_run import finished_run
 
 ROUNDING = 1e-9
 """Share of the largest force up to which sums of forces vanish."""

@@ -24,10 +24,8 @@ from solver.scenes.method import method_of
 from solver.study.fit import fit
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.quantities import reading
-from solver.study.quantities.finished import (
-    FinishedRun,
-    finished_run,
-)
+from solver.study.quantities.finished import FinishedRun
+from solver.study.scene_run import finished_run
 
 MOVED_END = {
     "left_end": "free",

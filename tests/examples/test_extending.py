@@ -22,8 +22,8 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.definitions import LOAD
 from solver.study.quantities import cycles
-from solver.study.quantities.finished import finished_run
 from solver.study.quantities.quantity import quantity
+from solver.study.scene_run import finished_run
 
 PAGE = Path(__file__).resolve().parents[2] / "solver" / "EXTENDING.md"
 KINDS = (

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from solver.discrete.rods.rods import End
+from solver.discrete.rods.end import End
 from solver.scenes.bar import BarSettings
 
 SMALL = {"elements": 30, "instants": 41, "substructures": 6}

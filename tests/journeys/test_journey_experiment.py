@@ -5,19 +5,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from pages import (
-    ANSWER,
-    button,
-    close_dialog,
-    field,
-    figures,
-    go,
-    is_solved,
-)
+from pages import ANSWER, button, close_dialog, field, figures, go, is_solved
 from playwright.sync_api import Page, expect
 
 from app.state import default_settings
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 SIZES = {"elements": 20, "instants": 21, "substructures": 1}
 QUERY = "&".join([f"{name}={number}" for name, number in SIZES.items()])

@@ -15,8 +15,9 @@ from solver.reference.rules import rules_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import BlockSettings
 from solver.scenes.method import method_of
-from solver.study.quantities.finished import finished_run
-from solver.study.stability import Verdict, judge, run
+from solver.study.outcomes import run
+from solver.study.scene_run import finished_run
+from solver.study.verdicts import Verdict, judge
 
 BLOCK = (
     "block gap=flat plane=stress poisson=0.499 length=0.01 height=0.321 elements=59 "

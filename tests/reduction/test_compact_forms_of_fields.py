@@ -15,17 +15,13 @@ from runs import sample, settings_of
 from solver.arrays import Array
 from solver.reduction.clips import Clips, clips_of, monotone
 from solver.reduction.sizes import of_bases, of_clips, of_products
-from solver.reduction.svd import (
-    decompose,
-    decompositions,
-    front_decay,
-)
+from solver.reduction.svd import decompose, decompositions, front_decay
 from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.study.quantities import reading
-from solver.study.quantities.finished import finished_run
 from solver.study.quantities.reduction_measures import clips_in
+from solver.study.scene_run import finished_run
 
 
 @st.composite

@@ -17,7 +17,7 @@ from solver.latin.end.status_step import states_of
 from solver.reduction.basis import SeparatedBasis
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 GENEROUS = {"pgd_modes": 100, "pgd_pairs": 100, "pgd_tolerance": 1e-12}
 

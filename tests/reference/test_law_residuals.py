@@ -17,7 +17,7 @@ from solver.reference.law_residuals import RowFields, law_residuals
 from solver.reference.rules import rules_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.study.stability import AT_ROUNDING
+from solver.study.outcomes import AT_ROUNDING
 
 ROUNDED = 1e-10
 SEEN = 1e-6

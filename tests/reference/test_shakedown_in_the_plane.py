@@ -13,15 +13,12 @@ import numpy as np
 import pytest
 
 from solver.reference.assembly import NoReferenceError
-from solver.reference.shakedown import (
-    MOST_POINTS,
-    largest_swing,
-    slip_space,
-)
+from solver.reference.shakedown import MOST_POINTS, largest_swing, slip_space
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycles import cycle_ends
-from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.finished import FinishedRun
+from solver.study.scene_run import finished_run
 
 N_CYCLES = 4
 LOADS = {"layers": "bend_load", "block": "top_tangential_load"}

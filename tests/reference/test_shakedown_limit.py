@@ -11,7 +11,7 @@ from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.cycles import cycle_ends, cycles_of
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 BOUND = 1500.0
 LENGTH = 1.0

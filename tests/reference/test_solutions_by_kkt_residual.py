@@ -9,7 +9,7 @@ import pytest
 from runs import settings_of
 
 from solver.latin import Ending, Stop, solve
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
 from solver.scenes import discretise

@@ -27,7 +27,7 @@ from solver.discrete.problem import Problem
 from solver.laws import OPEN, Component, Contact
 from solver.laws.play import Play, play
 from solver.reference import linear_system
-from solver.reference.assembly import Interrupted
+from solver.reference.assembly import Interrupted, never
 from solver.reference.condensation import Condensation
 from solver.reference.factors import UpdatedFactors
 from solver.reference.glued import base_of, from_jumps, self_stresses
@@ -327,7 +327,7 @@ def test_a_solution_is_found_again_from_itself_in_one_step(seed: int) -> None:
     found = newton.follow(at, sides, [at, *newton.approach(at, sides)])
     assert found is not None
     before = newton.system.solutions
-    again = newton.seek_from(found, sides)
+    again = newton.seek(newton.system, found, sides)
     assert again is not None
     assert newton.system.solutions == before + 1
     assert np.array_equal(again.step.jump, found.step.jump)
@@ -366,7 +366,7 @@ def single(k_along: float, k_across: float, bound: float, mu: float, force: Arra
     return problem([part], {"support": law}, force.shape[1])
 
 
-def marched(of: Problem, stop=None) -> tuple[Array, Array]:
+def marched(of: Problem, stop=never) -> tuple[Array, Array]:
     """Jumps and forces of all instants, (n_jumps, n_instants) each."""
     condensed = Condensation(of)
     instants = Instants(condensed, None, None, lambda _: True, stop)

@@ -30,7 +30,7 @@ from solver.scenes import discretise
 from solver.scenes.fault import FaultSettings
 from solver.settings.values import SettingError
 from solver.study.quantities import reading
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 SMALL = {"elements": 48, "elements_up": 24, "instants": 31}
 

@@ -26,7 +26,7 @@ from solver.discrete.rope.wire_forces import (
     stress_ranges,
     wire_stresses,
 )
-from solver.files.saved import result_arrays
+from solver.files.results import result_arrays
 from solver.latin import Auto, Latin, Stop
 from solver.reference.closed_forms.bent_strand import BentWire
 from solver.reference.contact import IncrementalContact
@@ -39,7 +39,8 @@ from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.study.quantities import reading
-from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.finished import FinishedRun
+from solver.study.scene_run import finished_run
 
 CLAMPED: dict[str, Any] = {
     "bending": "clamp",

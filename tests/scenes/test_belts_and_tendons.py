@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from wedges import drawn_in
 
 from solver import discrete
 from solver.discrete.plane.makers.band import PULL, TAIL
@@ -17,9 +18,10 @@ from solver.reference.newton import FEWEST_STEPS, Newton
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.values import SettingError
+from solver.study.outcomes import AT_ROUNDING, run
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.finished import FinishedRun
-from solver.study.stability import AT_ROUNDING, Verdict, judge, run
+from solver.study.verdicts import Verdict, judge
 
 TENDON = {
     "guide": "duct",
@@ -140,7 +142,7 @@ def test_a_jack_reads_its_force_and_wedges_leave_the_known_one():
     jacked = np.argmin(np.abs(settings.times() - 0.5))
     assert force[jacked] == pytest.approx(2e6, rel=3e-4)
     assert tensions[0, jacked] == pytest.approx(1768.8e3, rel=5e-4)
-    drawn = settings.capstan.drawn_in(2e6, 0.006)
+    drawn = drawn_in(settings.capstan, 2e6, 0.006)
     assert tensions[:, -1].max() == pytest.approx(drawn.largest, rel=1e-3)
     assert force[-1] == pytest.approx(drawn.at_anchor, rel=2e-3)
 

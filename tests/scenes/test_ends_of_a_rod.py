@@ -15,7 +15,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.values import SettingError
 from solver.study.quantities import QUANTITIES
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 
 def bar(**changes):

@@ -14,7 +14,8 @@ from runs import solved
 from solver import Stack, discrete
 from solver.arrays import Array
 from solver.discrete import Side, SideComponent, Support
-from solver.discrete.rods.rods import End, Rods
+from solver.discrete.rods.end import End
+from solver.discrete.rods.rods import Rods
 from solver.latin import Ending, Latin, solve
 from solver.laws import Contact, FrictionLaw, SlipFactor
 from solver.reference.distance import distance_to, kkt_residual

@@ -23,7 +23,8 @@ from solver.scenes.remarks import (
     largest_strain,
     remarks_on,
 )
-from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.finished import FinishedRun
+from solver.study.scene_run import finished_run
 
 TALL = {
     "gap": "flat",

@@ -15,16 +15,11 @@ from solver.files.saved import settings_from_command
 from solver.reference.incremental import reference_of
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
-from solver.scenes.mesh_files import (
-    as_text,
-    from_text,
-    named,
-    read_example,
-)
+from solver.scenes.mesh_files import as_text, from_text, named, read_example
 from solver.scenes.named_sides import conditions_of
 from solver.settings.values import SettingError
 from solver.study.quantities import QUANTITIES
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 
 MESH = CATALOGUE["mesh"]
 FIELDS = {

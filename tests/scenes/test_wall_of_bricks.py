@@ -23,7 +23,7 @@ from solver.reference.newton import SINGULAR_STEPS, Newton
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.values import SettingError
-from solver.study.quantities.finished import known_reference
+from solver.study.known_reference import known_reference
 
 TIMES = np.linspace(0.0, 1.0, 21)
 DOWN = np.minimum(TIMES / 0.25, 1.0)

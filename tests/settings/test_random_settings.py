@@ -15,9 +15,10 @@ import param
 import pytest
 
 from solver.scenes import CATALOGUE
+from solver.study.outcomes import run
 from solver.study.random_loads import log_uniform
 from solver.study.random_runs import draw
-from solver.study.stability import Verdict, judge, run
+from solver.study.verdicts import Verdict, judge
 
 RUNS = int(os.environ.get("SLIPFRONT_RANDOM_RUNS", "4"))
 SMALLEST = 1e-12

@@ -13,7 +13,7 @@ from solver.scenes import CATALOGUE
 from solver.settings.values import SettingError
 from solver.study import proof
 from solver.study.quantities import reading
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 from solver.study.trade_case import case_from_file, cases_by_name
 
 CASES = list(cases_by_name().values())

@@ -24,7 +24,8 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE
 from solver.settings.values import SettingError
 from solver.study.quantities import QUANTITIES, reading
-from solver.study.quantities.finished import FinishedRun, figures_of, finished_run
+from solver.study.quantities.finished import FinishedRun, figures_of
+from solver.study.scene_run import finished_run
 
 COARSE = {"elements": 8, "elements_up": 4, "substructures": 1}
 STIFFNESS = 210e9 * 3.14e-6

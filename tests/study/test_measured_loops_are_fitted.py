@@ -25,7 +25,8 @@ from solver.study.measured_loop import (
     loop_in,
 )
 from solver.study.profile_likelihood import ProfileSide
-from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.finished import FinishedRun
+from solver.study.scene_run import finished_run
 
 BAR = {**SMALL, "load": "cycle", "peak": 900.0}
 SPRUNG = {**BAR, "friction_law": "compliant"}

@@ -20,7 +20,8 @@ from solver.scenes.method import method_of
 from solver.study.lessons import lesson_from_file
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycles import LoadCycles, cycles_of, fate_of, n_cycles_of
-from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.finished import FinishedRun
+from solver.study.scene_run import finished_run
 
 STIFFNESS = 210e9 * 3.14e-6
 BOUND = 1500.0

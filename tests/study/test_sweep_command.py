@@ -19,8 +19,9 @@ from solver.commands.cli import main
 from solver.scenes.bar import BarSettings
 from solver.settings.values import SettingError
 from solver.study.page import Map, Panel
+from solver.study.sweep.charts import chart_of
 from solver.study.sweep.plan import Row, axis_of, plan_of
-from solver.study.sweep.report import chart_of, write_sweep
+from solver.study.sweep.report import write_sweep
 from solver.study.sweep.run import snake
 
 SMALL = [f"--set={name}={value}" for name, value in TINY.items()]

@@ -24,7 +24,7 @@ from solver.commands.cli import main
 from solver.commands.console import postponed_interrupt
 from solver.scenes import CATALOGUE
 from solver.settings.values import SettingError
-from solver.study.quantities.finished import finished_run
+from solver.study.scene_run import finished_run
 from solver.study.sweep import run as runs
 from solver.study.sweep.executors import opened
 from solver.study.sweep.plan import Row

@@ -19,22 +19,18 @@ from solver.latin import Ending
 from solver.latin.end.status import Status
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE
-from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
+from solver.study.outcomes import APART, AT_ROUNDING, Outcome
 from solver.study.random_runs import draw, random_case
+from solver.study.scene_run import BROKEN, REFUSED, finished_run
 from solver.study.stability import (
-    APART,
-    AT_ROUNDING,
     METHODS,
-    Judge,
-    Outcome,
     StabilityCase,
-    Verdict,
     extreme_cases,
-    judge,
     judged_runs,
     row_of,
 )
 from solver.study.stability_report import COLUMNS, counts, judges, last_lines
+from solver.study.verdicts import Judge, Verdict, judge
 
 GOOD = Outcome(
     ending=Ending.CONVERGED,
@@ -118,7 +114,7 @@ def test_a_warning_breaks_a_run(monkeypatch):
     def warns(problem, stop):
         warnings.warn("overflow", RuntimeWarning, stacklevel=1)
 
-    monkeypatch.setattr("solver.study.quantities.finished.reference_of", warns)
+    monkeypatch.setattr("solver.study.known_reference.reference_of", warns)
     (row,) = judged_runs([StabilityCase("zero", "bar", {"peak": 0.0})])
     assert row["ending"] == BROKEN
     assert "overflow" in row["advice"]
@@ -201,7 +197,7 @@ def test_a_certified_answer_that_was_spoiled_is_wrong(monkeypatch, factor):
         case = StabilityCase("as it is", scene, SMALL[scene])
         assert [row["judged_by"] for row in judged_runs([case])] == [Judge.LAWS]
         with monkeypatch.context() as patch:
-            patch.setattr("solver.study.stability.finished_run", spoiled_run)
+            patch.setattr("solver.study.outcomes.finished_run", spoiled_run)
             (row,) = judged_runs([case])
         assert row["verdict"] == Verdict.WRONG
         assert row["judged_by"] == Judge.LAWS
@@ -223,7 +219,7 @@ def test_an_iterate_far_from_every_solution_is_wrong(monkeypatch):
         solution = dataclasses.replace(made.solution, status=status)
         return dataclasses.replace(made, solution=solution)
 
-    monkeypatch.setattr("solver.study.stability.finished_run", hasty_run)
+    monkeypatch.setattr("solver.study.outcomes.finished_run", hasty_run)
     settings = draw("block", 99796577, 25)
     early = CATALOGUE["block"].checked({**settings.changed(), "max_iterations": 20})
     (row,) = judged_runs([random_case(early, 99796577, 25)])
@@ -235,7 +231,7 @@ def test_no_other_solution_is_sought_for_a_run_that_claims_nothing(monkeypatch):
     def sought(*_, **__):
         raise AssertionError("a status step was made")
 
-    monkeypatch.setattr("solver.study.stability.status_step", sought)
+    monkeypatch.setattr("solver.study.outcomes.status_step", sought)
     settings = draw("block", 99796577, 25)
     early = CATALOGUE["block"].checked({**settings.changed(), "max_iterations": 20})
     (row,) = judged_runs([random_case(early, 99796577, 25)])
@@ -265,7 +261,7 @@ def test_a_reference_that_breaks_a_law_judges_nobody(monkeypatch):
         found = reference_of(problem)
         return dataclasses.replace(found, contact_force=0.999 * found.contact_force)
 
-    monkeypatch.setattr("solver.study.quantities.finished.reference_of", weaker)
+    monkeypatch.setattr("solver.study.known_reference.reference_of", weaker)
     values = {**SMALL["bar"], "finish": "none", "accuracy": 1e-3}
     (row,) = judged_runs([StabilityCase("by its own", "bar", values, error_force=0.1)])
     assert row["verdict"] == Verdict.UNCLEAR

@@ -13,28 +13,13 @@ from scipy.linalg import block_diag
 from solver.arrays import Array, Indices
 from solver.cache import CACHE
 from solver.discrete.problem import Problem
-from solver.discrete.rods.pieces import (
-    Piece,
-    RodPieces,
-    content_without_friction,
-    pieces_of,
-)
-from solver.discrete.rods.rods import SIDES, End, Rods
+from solver.discrete.rods.end import SIDES, End
+from solver.discrete.rods.pieces import Piece, RodPieces, content_without_friction
+from solver.discrete.rods.rod_rows import NO_ROW, RodRows
+from solver.discrete.rods.rods import Rods
 from solver.discrete.scales import Scales
-from solver.discrete.substructure import (
-    Elasticity,
-    Substructure,
-    tributary,
-)
-from solver.laws import (
-    Component,
-    Contact,
-    Dirichlet,
-    Interface,
-    Neumann,
-    Perfect,
-    RodStiffness,
-)
+from solver.discrete.substructure import Elasticity, Substructure, tributary
+from solver.laws import Contact, Dirichlet, Interface, Neumann, Perfect, RodStiffness
 
 DEGREES = 2
 """Macro modes of the friction force on each piece of a contact between rods: resultant
@@ -42,8 +27,6 @@ and first moment. Without them the forces of both sides balance only slowly: 1 %
 friction force then takes more than 200 iterations instead of 40 (measured by default,
 with Anderson acceleration and automatic k). 4 modes save up to half of the iterations
 with 20 wires or more in 4 pieces each, and so do 10 pieces; few wires gain nothing."""
-NO_ROW = -1
-"""Number of a boundary row that a node does not have."""
 
 
 def problem_of(rods: Rods) -> Problem:
@@ -78,11 +61,6 @@ class CutRods:
     (n_nodes,), m, and `rub_at_ends` says whether the first and the last node rub. Each
     interface represents a number of `copies`, by default for itself alone.
 
-    Degrees of freedom run along rod after rod; a broken rod has two at its break, and
-    no boundary row there. Rows of one law follow each other: the lower sides of all
-    contacts, if they are between rods, the upper sides of all contacts, then the left
-    ends and the right ends, cut by cut.
-
     The search direction of the cuts and ends is ES/l_sub, with ES the harmonic mean
     over the substructure. On the friction points it is the density ES/l_sub^2 times one
     element's length, the same at every node and on both sides of a contact: with the
@@ -106,35 +84,8 @@ class CutRods:
         length = max(each.length for each in rods)
         stiffness = max(each.stiffness for each in rods)
         self._scales = Scales(length, stiffness, rods[0].duration)
-        self._sizes, before = pieces_of(rods[0])
-        # Nodes of piece after piece, (n_nodes + n_cuts,): a cut's are there twice.
-        self._piece = np.repeat(np.arange(len(self._sizes)), np.add(self._sizes, 1))
-        self._nodes = np.arange(len(self._piece)) - self._piece
-        self._shares = np.concatenate([tributary(size) for size in self._sizes])
-        self._rubs = slice(1 - rub_at_ends[0], len(self._nodes) - 1 + rub_at_ends[1])
-        # Degrees of freedom more that a rod has beyond its break, (n_rods, n_pieces).
-        self._beyond = np.zeros((len(rods), len(self._sizes)), dtype=np.intp)
-        if rods[0].broken is not None:
-            self._beyond[rods[0].broken[0] - 1, before:] = 1
-        breaks = np.diff(self._beyond, axis=1)
-        self._dofs_at = np.ones((len(rods), rods[0].elements + 1), dtype=np.intp)
-        self._dofs_at[:, np.cumsum(self._sizes)[:-1]] += breaks
-        # Contacts that have a rod below.
-        if len(names) == len(rods):
-            self._lower = 0
-        else:
-            self._lower = len(names)
-        # Rows of the sides of contacts, lower ones first, at the nodes of all pieces.
-        self._sides = np.full((len(names) + self._lower, len(self._nodes)), NO_ROW)
-        rubbing = self._sides[:, self._rubs]
-        rubbing[:] = np.arange(rubbing.size).reshape(rubbing.shape)
-        # Rows of the left and the right end of every piece, (2, n_pieces, n_rods).
-        is_whole = breaks.T == 0
-        is_there = np.ones((2, len(self._sizes), len(rods)), dtype=bool)
-        is_there[0, 1:] = is_whole
-        is_there[1, :-1] = is_whole
-        rows = rubbing.size - 1 + np.cumsum(is_there).reshape(is_there.shape)
-        self._ends = np.where(is_there, rows, NO_ROW)
+        self._rows = RodRows(rods, len(names), rub_at_ends)
+        self._shares = np.concatenate([tributary(size) for size in self._rows.sizes])
 
     def problem(self) -> Problem:
         """Discrete problem of the rods."""
@@ -145,7 +96,7 @@ class CutRods:
             carried = rods.settlement / scales.displacement
         # Both degrees of freedom of a break stand at its node.
         positions = []
-        for of_rod, dofs in zip(self._positions, self._dofs_at, strict=True):
+        for of_rod, dofs in zip(self._positions, self._rows.dofs_at, strict=True):
             positions.append(np.repeat(of_rod, dofs))
         parts = CACHE.get(self._content(), self._parts)
         return Problem(
@@ -163,8 +114,8 @@ class CutRods:
         return (
             "substructures of rods",
             self._scales,
-            self._sides.shape,
-            (self._rubs.start, self._rubs.stop),
+            self._rows.sides.shape,
+            (self._rows.rubbing.start, self._rows.rubbing.stop),
             tuple(contents[id(rods)] for rods in self._rods),
         )
 
@@ -185,10 +136,8 @@ class CutRods:
         stiffness = self._stiffness(rods)
         free_force = _free_force(rods, stiffness)
         inner_force = self._inner_force(rods, free_force)
-        first = 0
-        for number, size in enumerate(self._sizes):
-            piece = Piece(number, first, size)
-            rows = self._rows(rod, piece)
+        for piece in self._rows.pieces():
+            rows = self._rows.rows_of(rod, piece)
             springs = piece.springs(rods)
             # A node of a break, or one that does not rub, has no row.
             is_row = rows != NO_ROW
@@ -201,18 +150,11 @@ class CutRods:
                 pushing = free_force[piece.elements]
             yield Substructure(
                 elasticity=shared[key],
-                dofs=self._dofs_of(rod, piece),
+                dofs=self._rows.dofs_of(rod, piece),
                 rows=rows[is_row],
                 body_force=self._body_force(rods, piece, springs, inner_force),
                 free_force=pushing,
             )
-            first += size
-
-    def _dofs_of(self, rod: int, piece: Piece) -> Indices:
-        """Degrees of freedom of the nodes of a piece of a rod, (n_nodes,)."""
-        before = int(self._dofs_at[:rod].sum()) + int(self._beyond[rod, piece.number])
-        first = before + piece.first
-        return np.arange(first, first + piece.size + 1)
 
     def _key(
         self,
@@ -231,22 +173,6 @@ class CutRods:
             (rods.length / self._scales.displacement, rods.elements),
             tuple((node, end.spring / unit) for node, end in springs.items()),
         )
-
-    def _rows(self, rod: int, piece: Piece) -> Indices:
-        """Boundary rows of a piece, (n,), or NO_ROW: of contacts, then of both ends."""
-        at_sides = self._sides[self._sides_of(rod), piece.nodes]
-        return np.concatenate([at_sides.ravel(), self._ends[:, piece.number, rod]])
-
-    def _sides_of(self, rod: int) -> list[int]:
-        """Sides of contacts on a rod: with its support, or with its neighbours."""
-        if not self._lower:
-            return [rod]
-        sides = list[int]()
-        if rod > 0:
-            sides.append(self._lower + rod - 1)
-        if rod < self._lower:
-            sides.append(rod)
-        return sides
 
     def _body_force(
         self,
@@ -280,12 +206,12 @@ class CutRods:
             unit = self._scales.displacement
             shape = (rods.elements + 1, len(rods.instants))
             along = np.broadcast_to(rods.body_force, shape)
-            density = (along * unit / self._scales.force)[self._nodes]
+            density = (along * unit / self._scales.force)[self._rows.nodes]
             lengths = rods.length / unit / rods.elements * self._shares
             forces.append(lengths[:, None] * density)
         if free_force is not None:
             # Nothing pushes from beyond the ends of a piece.
-            ends = np.cumsum([0, *self._sizes])
+            ends = np.cumsum([0, *self._rows.sizes])
             pushing = np.insert(-free_force, ends, 0.0, axis=0)
             forces.append(np.diff(pushing, axis=0))
         if forces:
@@ -304,7 +230,7 @@ class CutRods:
 
         `stiffness` is ES of the elements of the rod, (n_elements,), scaled; `springs`
         hold nodes of the piece; `is_row` says which boundary rows there are, (n,), of
-        those of `_rows`.
+        those of `RodRows.rows_of`.
         """
         units = self._scales
         own_stiffness = stiffness[piece.elements]
@@ -341,16 +267,19 @@ class CutRods:
         first_above = len(self._rods) - len(self._names)
         for number, name in enumerate(self._names):
             yield name, self._friction(first_above + number, self._copies[number])
-        yield SIDES["left"], self._held_or_pulled(rods.left, self._ends[0, 0], 0)
-        for piece in range(len(self._sizes) - 1):
-            first = self._ends[1, piece]
-            second = self._ends[0, piece + 1]
+        yield SIDES["left"], self._held_or_pulled(rods.left, self._rows.ends[0, 0], 0)
+        for piece in range(len(self._rows.sizes) - 1):
+            first = self._rows.ends[1, piece]
+            second = self._rows.ends[0, piece + 1]
             whole = first != NO_ROW
             # The macro problem balances the force of each rod.
             macro = np.eye(int(whole.sum()))
             law = Perfect(first[whole], second[whole], macro)
             yield f"cut {piece + 1}-{piece + 2}", law
-        yield SIDES["right"], self._held_or_pulled(rods.right, self._ends[1, -1], -1)
+        yield (
+            SIDES["right"],
+            self._held_or_pulled(rods.right, self._rows.ends[1, -1], -1),
+        )
 
     def _held_or_pulled(self, end: End, rows: Indices, node: int) -> Interface:
         """Law of the ends of all rods on a side, at their rows, (n_rods,).
@@ -371,19 +300,16 @@ class CutRods:
         """Contact law of a rod with its support, or with the rod before it."""
         rods = self._rods[rod]
         units = (self._scales.displacement, self._scales.force)
+        component = self._rows.component_of(rod)
         macro = None
-        if self._lower:
-            above, below = self._sides[[self._lower + rod - 1, rod - 1], self._rubs]
-            component = Component(above, below)
+        if component.below is not None:
             macro = self._macro_basis()
-        else:
-            component = Component(self._sides[rod, self._rubs])
-        nodes = self._nodes[self._rubs]
-        weights = rods.length * (self._shares[self._rubs] / rods.elements)
+        nodes = self._rows.nodes_of_pairs
+        weights = rods.length * (self._shares[self._rows.rubbing] / rods.elements)
         # The strength is per length: a pair has that of its tributary length.
         known = rods.strengths[nodes] * weights[:, None] / units[1]
         known = known * np.broadcast_to(rods.factors, len(self._names))[rod - 1]
-        points = self._points(rod)
+        points = self._rows.points_of(rod)
         positions = np.zeros(points[-1] + 1)
         positions[points] = self._positions[rod][nodes]
         return Contact(
@@ -399,22 +325,12 @@ class CutRods:
     def _macro_basis(self) -> sparse.csr_array:
         """Macro basis of a contact between rods, (n_pairs, n_macro), piece by piece."""
         # Macro forces balance on each piece, whose operator sees no others.
-        counts = np.bincount(self._piece[self._rubs]).tolist()
+        counts = np.bincount(self._rows.pieces_of_pairs).tolist()
         bases = list[Array]()
         for count in counts:
             along = np.linspace(-1.0, 1.0, count)
             bases.append(np.vander(along, min(DEGREES, count)))
         return sparse.csr_array(block_diag(*bases))
-
-    def _points(self, rod: int) -> Indices:
-        """Index of the point of each pair of a rod's contact, (n_pairs,).
-
-        Where the rod or the one before it is broken there are two points.
-        """
-        piece = self._piece[self._rubs]
-        nodes = self._nodes[self._rubs]
-        beyond = self._beyond[max(rod - 1, 0) : rod + 1].max(axis=0)
-        return np.asarray(nodes - nodes[0] + beyond[piece])
 
     def _stiffness_at_nodes(self, rods: Rods) -> Array:
         """ES around each node of a rod, (n_nodes,), scaled, over the rod's length.

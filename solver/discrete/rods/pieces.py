@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.cache import content_of
-from solver.discrete.rods.rods import End, Rods
+from solver.discrete.rods.end import End
+from solver.discrete.rods.rods import Rods
 from solver.discrete.substructure import Substructure, substructure_sizes
 
 OF_FRICTION = {"strength", "factors", "pressure", "friction_law"}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import Literal
 
 import numpy as np
 
@@ -17,7 +16,6 @@ from solver.checks import (
     AnyOf,
     Count,
     InstanceOf,
-    Number,
     Numbers,
     SequenceOf,
     check,
@@ -25,76 +23,19 @@ from solver.checks import (
 )
 from solver.discrete.probes import Probe, Reaction, constant, reaction
 from solver.discrete.problem import Problem
-from solver.discrete.structure import (
-    OUTWARD,
-    Act,
-    Axes,
-    Description,
-    Hold,
-    Loop,
-    on_side,
+from solver.discrete.rods.end import SIDES, End, EndName
+from solver.discrete.rods.rods_drawn import (
+    act_of_body_force,
+    act_of_settlement,
+    act_of_strain,
+    acts_at_ends,
+    acts_of_pressure,
+    holds_of_ends,
+    holds_of_support,
 )
+from solver.discrete.structure import Act, Axes, Description, Hold, Loop
 from solver.laws import FrictionLaw
 from solver.refusal import RefusedError
-
-SHOWN = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
-"""Positions at which a body force that changes along the rods is drawn, and the
-pressure where rods rub; over the length."""
-SEVERAL = 8
-"""Largest number of wires of which each shows its load."""
-EndName = Literal["left", "right"]
-SIDES = {"left": "support", "right": "load"}
-"""Interfaces of the ends, by their side."""
-
-
-@dataclass(frozen=True, eq=False)
-class End:
-    """Load or support at one end of every rod; without values the end is free.
-
-    Attributes
-    ----------
-    force
-        Axial force on the end, positive to the right, shape (n_instants,), N; None
-        where the end is held.
-    displacement
-        Displacement of the support that holds the end, shape (n_instants,), m; None
-        where the end is not held.
-    spring
-        Stiffness of the spring between the end and that support, N/m; infinite without
-        a spring.
-
-    Raises
-    ------
-    RefusedError
-        For a force together with a displacement, a spring that is not stiffer than
-        zero, or values that are not finite.
-    """
-
-    force: Array | None = None
-    displacement: Array | None = None
-    spring: float = np.inf
-
-    def __post_init__(self) -> None:
-        over_time = Numbers(((None,),))
-        spring = Number(0.0, above=True, endless=True)
-        check(self, spring=spring, force=over_time, displacement=over_time)
-        if self.force is not None and self.displacement is not None:
-            raise RefusedError(
-                "End.force",
-                "given, with a displacement",
-                "either of them",
-                "leave out the other",
-            )
-
-    @property
-    def is_prescribed(self) -> bool:
-        """Check whether the displacement of the end is prescribed."""
-        return self.displacement is not None and bool(np.isinf(self.spring))
-
-    @property
-    def is_on_spring(self) -> bool:
-        """Check whether a spring holds the end."""
-        return self.displacement is not None and not np.isinf(self.spring)
 
 
 @dataclass(frozen=True, eq=False)
@@ -363,54 +304,19 @@ class Rods:
 
     def _acts(self) -> Iterator[Act]:
         """Arrows of loads and motions of the ends, of loads along rods, of pressure."""
-        yield from self._acts_at_ends()
-        right = OUTWARD["right"]
-        shown = np.rint(SHOWN * self.elements).astype(np.intp)
-        if self.body_force is not None and self.body_force.ndim == 1:
-            places = on_side("body", [0.5])
-            yield Act("body", "b", places, right, self.body_force, "N/m")
-        elif self.body_force is not None:
-            places = on_side("body", SHOWN)
-            yield Act("body", "b", places, right, self.body_force[shown], "N/m")
+        yield from acts_at_ends(self.ends, self.wires)
+        if self.body_force is not None:
+            yield act_of_body_force(self.body_force)
         if self.strain is not None:
-            values = self.strain[np.abs(self.strain).max(axis=1).argmax()]
-            yield Act("body strain", "ε₀", on_side("body", []), right, values, "")
+            yield act_of_strain(self.strain)
         if self.settlement is not None:
-            # At both ends, too: of a pile the largest settlement is that of its head.
-            shares = np.linspace(0.0, 1.0, len(SHOWN))
-            settled = self.settlement[np.rint(shares * self.elements).astype(np.intp)]
-            yield Act("bottom x", "s", on_side("bottom", shares), right, settled, "m")
-        highest = self.strengths.max(axis=1)
-        is_rubbing = np.interp(SHOWN, self.nodes / self.length, highest) > 0.0
-        if self.pressure is not None and is_rubbing.any():
-            places = on_side("top", SHOWN[is_rubbing])
-            yield Act("top y", "p", places, OUTWARD["bottom"], self.pressure, "N/m")
-
-    def _acts_at_ends(self) -> Iterator[Act]:
-        """Arrows of forces on the ends, and of displacements of their supports."""
-        right = OUTWARD["right"]
-        shown = self.wires if self.wires <= SEVERAL else 1
-        heights = (np.arange(shown) + 0.5) / shown
-        for side, end in self.ends.items():
-            if end.displacement is not None:
-                places = on_side(side, heights[:1] if side == "left" else heights)
-                yield Act(f"{side} x", "u", places, right, end.displacement, "m")
-            elif end.force is not None:
-                places = on_side(side, heights)
-                yield Act(f"{side} x", "F", places, right, end.force, "N")
+            yield act_of_settlement(self.settlement)
+        if self.pressure is not None:
+            places = self.nodes / self.length
+            yield from acts_of_pressure(self.pressure, self.strengths, places)
 
     def _holds(self) -> Iterator[Hold]:
         """Springs and clamps of the ends, and the support of a single rod."""
-        for side, end in self.ends.items():
-            if end.is_on_spring:
-                yield Hold("spring", side, moved=end.displacement)
-            elif end.is_prescribed and (side == "left" or not np.any(end.displacement)):
-                yield Hold("clamp", side, moved=end.displacement)
-        if self.wires > 1:
-            return
-        rubs = np.flatnonzero(self.strengths.any(axis=1))
-        # The support is drawn along each stretch that rubs.
-        for run in np.split(rubs, np.flatnonzero(np.diff(rubs) > 1) + 1):
-            if len(run) > 1:
-                first, last = run[[0, -1]] / self.elements
-                yield Hold("support", "bottom", (float(first), float(last)))
+        yield from holds_of_ends(self.ends)
+        if self.wires == 1:
+            yield from holds_of_support(self.strengths)

@@ -6,7 +6,8 @@ import numpy as np
 
 from solver.discrete.problem import Problem
 from solver.discrete.rods.cut_rods import CutRods
-from solver.discrete.rods.rods import End, Rods
+from solver.discrete.rods.end import End
+from solver.discrete.rods.rods import Rods
 from solver.discrete.rope.rope import Rope, RopeWire
 
 

@@ -16,7 +16,7 @@ from solver.latin.end.status import Status, collapses, lost_jump
 from solver.latin.end.status_step import Certificate, states_of, status_step
 from solver.latin.indicators import ratio
 from solver.latin.iterate import Iterate
-from solver.reference.assembly import Interrupted, NoReferenceError
+from solver.reference.assembly import Interrupted, NoReferenceError, never
 from solver.reference.distance import LEAST_SHARE, VANISHING
 from solver.reference.incremental import Incremental, incremental_solver
 from solver.reference.solution import Reference
@@ -86,7 +86,7 @@ class ErrorEstimate:
         *,
         needs_certificate: bool = False,
         may_shift: bool = False,
-        interrupted: Callable[[], bool] = lambda: False,
+        interrupted: Callable[[], bool] = never,
     ) -> None:
         self._accuracy = accuracy
         self.needs_certificate = needs_certificate

@@ -19,6 +19,7 @@ from solver.discrete.problem import Problem
 from solver.latin.indicators import contact_status
 from solver.latin.iterate import Iterate
 from solver.laws import OPEN
+from solver.reference.assembly import never
 from solver.reference.condensation import BLURRED
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import Incremental
@@ -82,7 +83,7 @@ def status_step(
     problem: Problem,
     states: States,
     max_systems: int | None = None,
-    stop: Callable[[], bool] | None = None,
+    stop: Callable[[], bool] = never,
 ) -> tuple[Reference, Certificate | None]:
     """Correct the states of an iterate to a solution, and certify the solution.
 

@@ -43,6 +43,7 @@ from solver.latin.end.status import (
 from solver.latin.end.status_step import Certificate, StatusStep
 from solver.latin.iterate import Iterate
 from solver.latin.stages.pgd import PGD
+from solver.reference.assembly import never
 from solver.reference.distance import HIDDEN, kkt_residual
 
 LARGEST_VIOLATION = 1e-2
@@ -162,7 +163,7 @@ class StopState:
         self,
         latin: JudgedMethod,
         spent: float = 0.0,
-        interrupted: Callable[[], bool] = lambda: False,
+        interrupted: Callable[[], bool] = never,
     ) -> None:
         self._stop = latin.stop
         self._relaxation = latin.relaxation

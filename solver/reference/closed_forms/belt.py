@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -20,22 +19,6 @@ POINTS = 2001
 """Points along the guide, over which strains are integrated: to 1e-7 of them."""
 PRECISE = 1e-12
 """Relative precision of a tension that is sought."""
-
-
-class DrawIn(NamedTuple):
-    """Forces of a tendon after its wedges have drawn in.
-
-    Attributes
-    ----------
-    length
-        Length from the anchor over which friction has turned round, m.
-    largest, at_anchor
-        Largest force, at the end of that length, and force at the anchor, N.
-    """
-
-    length: float
-    largest: float
-    at_anchor: float
 
 
 @dataclass(frozen=True)
@@ -72,13 +55,6 @@ class Capstan:
         """Share of the tension that friction takes per length, c = mu a / L, 1/m."""
         return self.friction * self.angle / self.length
 
-    def slip_angle(self, ratio: float) -> float:
-        """Angle of slip after one of two equal tensions has grown to a ratio, rad.
-
-        `ratio` is that tension over the even one.
-        """
-        return math.log(ratio) / self.friction
-
     def stretched(self, tension: float, length: float) -> float:
         """Elongation of a length that slips towards an end, and of the span, m.
 
@@ -98,19 +74,6 @@ class Capstan:
             return self.stretched(tension, 0.5 * self.length)
         held = tension / self.ratio / self.stiffness * self.span
         return self.stretched(tension, self.length) + held
-
-    def drawn_in(self, tension: float, by: float) -> DrawIn | None:
-        """Forces after wedges have drawn in by a length, m, less than the elongation.
-
-        The span of the anchor must be short. None where friction turns round on the
-        whole length.
-        """
-        share = math.sqrt(self.stiffness * self.loss * by / tension)
-        if share >= -math.expm1(-self.loss * self.length):
-            return None
-        length = -math.log1p(-share) / self.loss
-        left = 1.0 - share
-        return DrawIn(length, tension * left, tension * left**2)
 
     @property
     def angles(self) -> Array:

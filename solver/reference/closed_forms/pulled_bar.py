@@ -25,7 +25,8 @@ import numpy as np
 import scipy
 
 from solver.arrays import ROUNDING, Array
-from solver.discrete.rods.rods import End, Rods
+from solver.discrete.rods.end import End
+from solver.discrete.rods.rods import Rods
 from solver.laws import FrictionLaw
 from solver.laws.play import play
 

@@ -15,7 +15,7 @@ from solver.laws import OPEN, Contact
 from solver.reference.closed_forms.arch import VoussoirArch
 from solver.reference.limit_analysis import load_factors
 from solver.settings.scene import Settings
-from solver.study.quantities.contact_measures import AT, instant_at
+from solver.study.quantities.body_measures import AT, instant_at
 from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import quantity
 

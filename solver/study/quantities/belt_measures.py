@@ -7,7 +7,7 @@ import numpy as np
 from solver.arrays import Array, without_residue
 from solver.discrete.plane.makers.band import Band
 from solver.settings.scene import Settings
-from solver.study.quantities.contact_measures import AT, instant_at
+from solver.study.quantities.body_measures import AT, instant_at
 from solver.study.quantities.finished import FinishedRun, first_largest
 from solver.study.quantities.quantity import quantity
 

@@ -14,6 +14,7 @@ from solver.laws import OPEN, FrictionLaw
 from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.settings.scene import Settings
+from solver.study.quantities.body_measures import is_rope
 from solver.study.quantities.contact_measures import are_clamped
 from solver.study.quantities.cycles import (
     cycle_ends,
@@ -123,11 +124,6 @@ def shakedown_factor(run: FinishedRun) -> float:
         return shakedown_limit(run.problem, _last(run))
     except NoReferenceError:
         return math.nan
-
-
-def is_rope(settings: Settings) -> bool:
-    """Check whether the structure is a rope: helical wires around a core."""
-    return settings.kind == "helices"
 
 
 def _rope(settings: Settings) -> Rope:

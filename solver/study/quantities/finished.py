@@ -2,56 +2,24 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, cached_property
-from typing import NamedTuple
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.cache import CACHE
 from solver.discrete.elements import von_mises
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Loop
-from solver.latin import Answer, Decision, Iterate, Solution, record, solve
-from solver.latin.end.certified import certified_answer
-from solver.latin.end.cost import costs_of
-from solver.latin.end.status import certified, jump_of, limit_of
-from solver.latin.end.status_step import status_step
-from solver.laws import OPEN
-from solver.reference.assembly import Interrupted, NoReferenceError
-from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental_solver, reference_of
-from solver.reference.rules import States
-from solver.reference.solution import Reference
-from solver.scenes import CATALOGUE, discretise
-from solver.scenes.method import method_of
+from solver.latin import Iterate, Solution
 from solver.scenes.plane import poisson_in
 from solver.settings.scene import Settings
 from solver.study.quantities.cycles import LoadCycles, cycles_of, slips_of
 
-REFUSED = "refused"
-BROKEN = "broken"
-"""Endings of a run without a result: refused settings, or a fault of the engine."""
-TINY: dict[str, dict[str, object]] = {
-    "bar": {"elements": 4, "substructures": 2, "instants": 3},
-    "block": {"elements": 4, "elements_up": 2, "substructures": 2, "instants": 3},
-}
-"""Tiny runs that precede timed ones: importing code is no part of a run's time."""
-ALONE = 60
-"""Iterations, with everything beside them, that take as long as a usual run.
-
-A status step from a neighbour may take a third of that: 4 systems an instant on 50
-elements and 13 on 1600. It takes 1 to 3 and 3 to 9 (measured)."""
 ZERO = 1e-9
 """Share of the largest value in a run below which a key figure is zero."""
 EQUAL = 1e-6
 """Relative difference up to which two values count as equally large."""
-Axes = tuple[tuple[str, str], tuple[str, str]]
-"""Title and unit of each of the two axes of a loop."""
 OF_UNITS = {
     "m": "displacement",
     "N": "force",
@@ -237,203 +205,3 @@ def figures_of(run: FinishedRun) -> list[KeyFigure]:
         name = DRIVES.get(title) or OF_UNITS[unit]
         figures.append(KeyFigure(name, title, unit, values))
     return figures
-
-
-def slipping_shares(status: NDArray[np.int8]) -> Array:
-    """Share of the points that slip at each instant, shape (n_instants,).
-
-    The status is that of all contact points, shape (n_points, n_instants).
-    """
-    if not len(status):
-        return np.zeros(status.shape[1])
-    slips = (status != 0) & (status != OPEN)
-    return np.asarray(slips.mean(axis=0))
-
-
-@cache
-def warm_up() -> None:
-    """Make tiny runs, once in a process, so that later times include no imports."""
-    for scene, tiny in TINY.items():
-        finished_run(CATALOGUE[scene].checked(tiny))
-
-
-def finished_run(
-    settings: Settings,
-    *,
-    errors: bool = True,
-    indicators: bool = True,
-    cancelled: Callable[[], bool] = lambda: False,
-    before: States | None = None,
-) -> FinishedRun:
-    """Run a scene to its stop rule.
-
-    Parameters
-    ----------
-    settings
-        Settings of the scene.
-    errors
-        Whether to compute the errors of every iteration, where there is a reference.
-    indicators
-        Whether to compute the indicators of every iteration.
-    cancelled
-        Asked again and again whether to give up.
-    before
-        States (stick, slip, open) of a run of similar settings, which the run starts
-        from if the solution of these settings is found from there.
-    """
-    # The time of a run includes its discretisation.
-    began = time.perf_counter()
-    problem = discretise(settings)
-    spent = time.perf_counter() - began
-    if errors:
-        known = known_reference(problem, cancelled)
-    else:
-        known = KnownReference()
-    distance = None
-    if known.reference is not None:
-        distance = distance_to(known.reference, problem)
-    # From a neighbour one status step may find the solution, without any iteration.
-    if before is not None:
-        near = neighbour(problem, settings, before, cancelled, spent)
-        if near is not None:
-            answer, decision = near
-            assert decision.status is not None
-            last = record(answer, decision, distance, watch=indicators)
-            found = Solution(answer, [last], decision.status)
-            return FinishedRun(settings, found, was_warm=True)
-    solution = solve(
-        problem,
-        method_of(settings),
-        distance=distance,
-        watch=indicators,
-        spent=spent,
-        cancelled=cancelled,
-    )
-    return FinishedRun(settings, solution, known_loss=known.lost_from)
-
-
-class KnownReference(NamedTuple):
-    """Reference of a problem, with doubts on existence and uniqueness.
-
-    Attributes
-    ----------
-    reference
-        Reference solution, if there is one.
-    doubt
-        Reason why there is no reference, or why it is not the only solution.
-    lost_from
-        First instant that is known to have no solution.
-    """
-
-    reference: Reference | None = None
-    doubt: str = ""
-    lost_from: int | None = None
-
-
-def known_reference(
-    problem: Problem, stop: Callable[[], bool] | None = None
-) -> KnownReference:
-    """Find the reference; `stop` is called repeatedly, and ends the search.
-
-    Nothing that it prepares is kept: a run afterwards prepares its own in its time.
-    """
-    try:
-        reference = reference_of(problem, stop)
-    except Interrupted:
-        return KnownReference(doubt="the reference takes longer")
-    except NoReferenceError as refusal:
-        return KnownReference(doubt=str(refusal))
-    finally:
-        CACHE.clear()
-    if not reference.converged.all():
-        return _without_solution(problem, reference)
-    # A reference past a jump is one of several equilibria.
-    if reference.jumps_at is not None:
-        where = jump_of(problem, reference.jumps_at)
-        return KnownReference(reference, f"at {where} it jumps to another equilibrium")
-    several = np.count_nonzero(reference.ambiguous)
-    if several:
-        return KnownReference(
-            reference, f"there are several solutions at {several} instants"
-        )
-    return KnownReference(reference)
-
-
-def _without_solution(problem: Problem, reference: Reference) -> KnownReference:
-    """Sentence on a problem whose reference has no solution at some instants."""
-    lost = np.count_nonzero(~reference.converged)
-    lost_from = None
-    message = (
-        f"the reference finds no solution at {lost} of {problem.n_instants} instants"
-    )
-    if reference.collapse is not None:
-        lost_from = reference.collapse.instant
-        message += f": there is no equilibrium {limit_of(problem, reference.collapse)}"
-    elif reference.jumps_at is not None:
-        # A jump of the reference is no proof: a run may converge at that instant.
-        message += ": friction softens until the structure jumps"
-    return KnownReference(None, message, lost_from)
-
-
-def neighbour(
-    problem: Problem,
-    settings: Settings,
-    states: States,
-    stop: Callable[[], bool] | None = None,
-    spent: float = 0.0,
-) -> tuple[Answer, Decision] | None:
-    """Solve by a status step from the states of a run with similar settings.
-
-    The answer counts only if it is certified for the discrete problem, and no other
-    solution shows, so that it does not depend on the start. None where it is not found
-    soon, or where `stop` returns True before. A run on separated bases never starts
-    from another one, since its bases are part of its result.
-
-    Parameters
-    ----------
-    problem, settings
-        Problem to be solved, and the settings that it was made from.
-    states
-        States as of `states_of`, shape (n_forces, n_instants).
-    stop
-        Asked again and again whether to give up.
-    spent
-        Time that the run took before, s.
-    """
-    began = time.perf_counter()
-    # States of another mesh, or of other instants, are no start.
-    fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
-    if settings.finish != "at-once" or settings.linear_stage == "pgd" or not fits:
-        return None
-    costs = costs_of(problem, states)
-    if not costs.afford(ALONE) or _may_have_others(problem):
-        return None
-    try:
-        solver = incremental_solver(problem, stop)
-        limit = costs.systems(ALONE)
-        _, certificate = status_step(solver, problem, states, limit, stop)
-    except (NoReferenceError, Interrupted):
-        return None
-    if certificate is None or certificate.residual > settings.accuracy:
-        return None
-    if certificate.solution.ambiguous.any():
-        return None
-    # The solution has fields of a run, too, with the k of its method.
-    k = method_of(settings).direction.of(problem)
-    answer = certified_answer(problem, k, certificate)
-    status = certified(answer, certificate)
-    seconds = spent + time.perf_counter() - began
-    return answer, Decision(seconds, certificate.residual, status, certificate)
-
-
-def _may_have_others(problem: Problem) -> bool:
-    """Check whether several solutions may exist: friction softens, or bonds break.
-
-    Which of them a run finds depends on its start.
-    """
-    for law in problem.contacts.laws.values():
-        friction = law.tangential
-        has_bonds = law.opens and bool(friction.bound.any())
-        if friction.softens or has_bonds:
-            return True
-    return False

@@ -25,16 +25,12 @@ import numpy as np
 
 from solver.latin import Ending
 from solver.latin.end.status_step import states_of
+from solver.reference.assembly import never
 from solver.reference.rules import States
 from solver.refusal import RefusedError
 from solver.settings.values import SettingError
-from solver.study.quantities.finished import (
-    BROKEN,
-    REFUSED,
-    FinishedRun,
-    finished_run,
-    warm_up,
-)
+from solver.study.quantities.finished import FinishedRun
+from solver.study.scene_run import BROKEN, REFUSED, finished_run, warm_up
 from solver.study.sweep.plan import LOST, STUCK, Plan, Row
 
 WORKER = "versions of a worker"
@@ -153,7 +149,7 @@ def sweep(
     done: Collection[int] = (),
     limit: float = math.inf,
     warm: bool = True,
-    cancelled: Callable[[], bool] = lambda: False,
+    cancelled: Callable[[], bool] = never,
 ) -> Iterator[Row]:
     """Run the points of a plan in an order from neighbour to neighbour.
 

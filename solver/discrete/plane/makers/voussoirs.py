@@ -380,7 +380,7 @@ class Arch(Bodies):
     def _acts(self) -> Iterator[Act]:
         """Arrows of loads, of movements of the abutment, and of the weight."""
         for act in self.above:
-            yield replace(act, points=self._as_shares(act.points))
+            yield replace(act, points=self._drawn.as_shares(act.points))
         for act in super()._acts():
             # Fill and live load act on many voussoirs, and are drawn once, by `above`.
             if not act.where.startswith((FILL, LIVE)):
