@@ -124,6 +124,24 @@ def test_neither_the_solver_nor_a_worker_of_the_page_imports_graphics():
     assert graphics_in(worker, GRAPHICS - {"app"}) == []
 
 
+def all_imported_by(module):
+    """A module of the page, and those of the page that it imports, directly or not."""
+    found = set()
+    waiting = {module}
+    while waiting:
+        one = waiting.pop()
+        found.add(one)
+        waiting |= (imports(one) & PAGE.keys()) - found
+    return found
+
+
+def test_a_command_that_draws_a_report_imports_no_widgets():
+    """Widgets would take a sixth of the time in which its charts are imported."""
+    drawing = all_imported_by("app.charts")
+    assert "app.templates" in drawing
+    assert graphics_in(drawing, {"panel_material_ui"}) == []
+
+
 @pytest.fixture(scope="module")
 def ran():
     """A command in a process in which graphics cannot be imported."""
