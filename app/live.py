@@ -9,7 +9,6 @@ from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
-from panel.models import HTML
 
 from app.display import Display
 from app.messages import TABLE
@@ -24,7 +23,7 @@ from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.views.type_size import TEXT
 from app.views.view import View
-from app.widgets import MEANINGS, PlainText, looks, wrapped
+from app.widgets import MEANINGS, PlainText, changing_text, looks, wrapped
 
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
 LARGE = 0.026
@@ -44,11 +43,15 @@ class Live:
         self.state = state
         self._document = document
         styles = {"flex": "1 1 240px"}
-        self._status = _changing("status", margin=(4, 6), styles=styles)
+        self._status = changing_text(
+            css_classes=["status"], stylesheets=[STYLE], margin=(4, 6), styles=styles
+        )
         self._sentence = PlainText(
             css_classes=["sentence"], stylesheets=[STYLE], margin=(0, 8)
         )
-        self._figures = _changing("figures", margin=(0, 8))
+        self._figures = changing_text(
+            css_classes=["figures"], stylesheets=[STYLE], margin=(0, 8)
+        )
         self._views: list[View] = [Scene(state), Timeline(state)]
         self._known: dict[type[View], View] = {}
         self._cards: list[Card] = []
@@ -374,12 +377,3 @@ def column(role: str, *parts: Any) -> pn.Column:
         sizing_mode="stretch_width",
         margin=0,
     )
-
-
-def _changing(role: str, **look: Any) -> HTML:
-    """Words that change with each picture, which tests and style sheets know by a role.
-
-    It is the model of Panel's pane, of which all properties would be set each time; the
-    browser takes its text as escaped.
-    """
-    return HTML(css_classes=[role], stylesheets=[STYLE], disable_math=True, **look)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import panel as pn
@@ -235,7 +236,7 @@ class Page:
         PAGES.leave()
 
     def _header(self) -> pmui.Row:
-        actions = {
+        actions: dict[str, tuple[str, Callable[[Any], None]]] = {
             "Lessons": ("school", lambda event: self._guide.offer("lesson")),
             "Cases": ("cases", lambda event: self._guide.offer("case")),
             "A class": ("groups", lambda event: self._class.open()),
@@ -262,20 +263,17 @@ class Page:
                 pmui.IconButton(icon=icon, description=title, on_click=action, **look)
             )
             roles = ["in-header", "of-desk"]
-        others = list(actions)[1:]
-        more = pmui.MenuButton(
-            label="",
-            icon="more_vert",
-            icon_size="24px",
-            items=[{"label": title, "icon": actions[title][0]} for title in others],
-            variant="text",
-            description="More",
-            on_click=lambda item: actions[item["label"]][1](None),
-            margin=0,
-            **looks("in-header", "of-phone"),
-        )
-        parts = [tabs, *buttons, more, AtOnce()]
-        return pmui.Row(*parts, margin=0, sizing_mode="stretch_width")
+        parts = [tabs, *buttons, AtOnce()]
+        header = pmui.Row(*parts, margin=0, sizing_mode="stretch_width")
+
+        def complete() -> None:
+            """Add the list once a window is narrow: a wide one hides it."""
+            if self.state.is_narrow and len(header) == len(parts):
+                header.insert(-1, _listed(actions))
+
+        self.state.param.watch(lambda event: complete(), "is_narrow")
+        complete()
+        return header
 
     def _present(self) -> None:
         """Switch between the view for a projector and the normal one."""
@@ -373,6 +371,22 @@ class Page:
     def _on_controls(self, is_open: bool) -> None:
         self._controls.open(is_open)
         self._live.make_room(is_open and self.state.is_narrow)
+
+
+def _listed(actions: dict[str, tuple[str, Callable[[Any], None]]]) -> pmui.MenuButton:
+    """A list of all buttons of the header but the first, by their icons and actions."""
+    titles = list(actions)[1:]
+    return pmui.MenuButton(
+        label="",
+        icon="more_vert",
+        icon_size="24px",
+        items=[{"label": title, "icon": actions[title][0]} for title in titles],
+        variant="text",
+        description="More",
+        on_click=lambda item: actions[item["label"]][1](None),
+        margin=0,
+        **looks("in-header", "of-phone"),
+    )
 
 
 def follow_itself(template: pmui.Page) -> None:

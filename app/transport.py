@@ -14,7 +14,7 @@ from app.frame import Selection
 from app.server import PAGES
 from app.state import PACES, SEARCH, PageState, answering
 from app.status import iterations
-from app.widgets import PlainText, button, looks, wrapped
+from app.widgets import button, changing_text, looks, wrapped
 from solver.scenes import CATALOGUE
 
 PLAYED_IN = 6.0
@@ -65,7 +65,7 @@ class Transport:
         self.play_button.margin = (10, 2)
         self._pin = _button("push_pin", PIN, state.pin, "of-page")
         # The label of a slider that follows quickly would be sent back (see `Echoes`).
-        self.iterate = PlainText(margin=0, **looks("iterate"))
+        self.iterate = changing_text(margin=0, **looks("iterate"))
         self.scrub = self._make_scrub()
         self._show_scene: Callable[[], None] | None = None
         self._turns = wrapped(css_classes=["turn"])
@@ -338,12 +338,12 @@ class Transport:
         """Write the number of the shown iterate, and of all, above the slider."""
         frame = self._state.frame
         if frame.is_followed:
-            self.iterate.object = "Answer"
+            self.iterate.text = "Answer"
         elif frame.is_answer:
-            self.iterate.object = f"Answer after {iterations(frame.iteration)}"
+            self.iterate.text = f"Answer after {iterations(frame.iteration)}"
         else:
             last = self._state.newest.iteration
-            self.iterate.object = f"Iteration {frame.iteration} of {last}"
+            self.iterate.text = f"Iteration {frame.iteration} of {last}"
 
     def _follow(self) -> None:
         """Set the slider to the shown iterate, except after a move by the user."""

@@ -16,6 +16,7 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 from markupsafe import Markup
+from panel.models import HTML
 
 from app.templates import html
 from solver.settings.scene import Icon
@@ -125,6 +126,14 @@ class PlainText(pn.viewable.Viewer):
 
     def __panel__(self) -> pn.pane.HTML:
         return self._pane
+
+
+def changing_text(**look: Any) -> HTML:
+    """Words that change with each picture, as escaped text.
+
+    It is the model of Panel's pane, of which all properties would be set each time.
+    """
+    return HTML(disable_math=True, **look)
 
 
 def button(label: str, act: Callable[[], object], **look: Any) -> pmui.Button:
