@@ -182,7 +182,7 @@ def test_the_slider_names_the_iterate_of_the_status_line(document: Document) -> 
         assert found, words
         assert last < int(found[1]) == state.newest.iteration
         last = int(found[1])
-        assert page._live.transport.iterate.object == f"Iteration {last} of {last}"
+        assert page._live.transport.iterate.text == f"Iteration {last} of {last}"
 
 
 @pytest.mark.usefixtures("orders", "document")
@@ -281,6 +281,22 @@ def test_a_sheet_of_controls_has_the_picture_move_up_on_a_phone_alone(
     assert ("with-sheet" in page._live.view.css_classes) == is_narrow
     page.template.sidebar_open = False
     assert "with-sheet" not in page._live.view.css_classes
+
+
+@pytest.mark.usefixtures("orders", "document")
+def test_a_header_has_its_list_of_buttons_once_a_window_is_narrow() -> None:
+    page = Page(PageState(default_settings("bar")))
+    header = page._header()
+    others = list(header)
+    for is_narrow in (True, False, True):
+        page.state.is_narrow = is_narrow
+        (listed,) = header.select(pmui.MenuButton)
+        assert [each for each in header if each is not listed] == others
+    titles = [item["label"] for item in listed.items]
+    assert titles == [each.description for each in header.select(pmui.IconButton)][1:]
+    phone = Page(PageState(default_settings("bar"), is_narrow=True))
+    assert len(phone._header().select(pmui.MenuButton)) == 1
+    assert not any(isinstance(each, pmui.MenuButton) for each in others)
 
 
 def test_components_share_the_definitions_of_their_looks_and_not_their_looks() -> None:
