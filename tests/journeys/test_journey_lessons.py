@@ -203,7 +203,7 @@ def test_a_class_is_joined_in_the_midst_of_an_answer(school: School) -> None:
     assert page.locator(".bk-Figure").count() == leader.locator(".bk-Figure").count()
 
 
-def test_all_six_of_a_class_who_predict_at_once_are_counted(
+def test_all_ten_of_a_class_who_predict_at_once_are_counted(
     school: School, server: Server
 ) -> None:
     leader = school.leader
@@ -212,17 +212,17 @@ def test_all_six_of_a_class_who_predict_at_once_are_counted(
     expect(button(leader, "Open the counts")).to_be_visible()
     stop(leader)
     # A browser takes a core for each page: the others press their buttons without one.
-    with crowd(f"{server.address}?class={school.code}", 5, "Some 1 %") as others:
+    with crowd(f"{server.address}?class={school.code}", 9, "Some 1 %") as others:
         others.wait()
-        expect(leader.get_by_text("0 of 6 have predicted")).to_be_visible()
+        expect(leader.get_by_text("0 of 10 have predicted")).to_be_visible()
         at = time.time() + 1.0
         button(page, "Some 10 %").evaluate(PRESS, 1e3 * at)
         others.press(at)
-        expect(leader.get_by_text("6 of 6 have predicted")).to_be_visible()
+        expect(leader.get_by_text("10 of 10 have predicted")).to_be_visible()
         button(leader, "Open the counts").click()
         for each in (leader, page):
-            expect(each.get_by_text("5 of 6", exact=True)).to_be_visible()
-            expect(each.get_by_text("1 of 6", exact=True)).to_be_visible()
+            expect(each.get_by_text("9 of 10", exact=True)).to_be_visible()
+            expect(each.get_by_text("1 of 10", exact=True)).to_be_visible()
         button(leader, "Go on to the answer").click()
         expect(page.get_by_role("alert")).to_contain_text("You chose “Some 10 %”")
     expect(status(page)).to_contain_text("75 % wrong")
