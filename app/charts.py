@@ -13,14 +13,23 @@ import numpy as np
 import pandas as pd
 import panel as pn
 from bokeh.embed import components
-from bokeh.models import BasicTicker, LogTicker, NoOverlap, Ticker
+from bokeh.models import (
+    BasicTicker,
+    BasicTickFormatter,
+    FixedTicker,
+    LogTicker,
+    LogTickFormatter,
+    NoOverlap,
+    Ticker,
+    TickFormatter,
+)
 from bokeh.palettes import Viridis256
 from bokeh.resources import Resources
 
 from app.templates import html
 from app.views.colors import REFERENCE
 from solver.arrays import Array
-from solver.files.amounts import number, unit_for
+from solver.files.amounts import unit_for
 from solver.study.page import (
     HUES,
     Chart,
@@ -40,8 +49,12 @@ LEVELS = 8
 """Number of contour lines on a map, about."""
 HEIGHT = 350
 """Height of a chart, px."""
+LONGEST = 150.0
+"""Ratio of the ends of the longest logarithmic axis with ticks at 1, 2, 5, 10, ..."""
 LABEL = 34
 """Characters of a line beside an axis."""
+SIZES = {"title": "1.05em", "labels": "1em", "ticks": "0.925em"}
+"""Type sizes: to Bokeh an em is 13 px, with and without the theme of the page."""
 UNPRINTED = "@media print { :host { display: none !important; } }"
 """Style sheet of what has no meaning on paper."""
 TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
@@ -212,11 +225,9 @@ def overlay(chart: Chart) -> hv.Overlay:
         x_limits = chart.x.limits or (None, None)
         y_limits = chart.y.limits or (None, None)
     ticks = {"x": _ticks(chart.x, xs), "y": _ticks(chart.y, ys)}
-    # A chart that fills would keep the texts of ticks that it began with, too.
-    texts = {
-        f"{name}axis.major_label_overrides": {}
-        for name, ticker in ticks.items()
-        if isinstance(ticker, Ticker)
+    formatters = {
+        f"{name}axis.formatter": _formatter(axis, ticks[name])
+        for name, axis in (("x", chart.x), ("y", chart.y))
     }
     # Whether axes follow a chart that fills is asked of elements, not of their overlay.
     return hv.Overlay([element.opts(framewise=True) for element in elements]).opts(
@@ -230,6 +241,8 @@ def overlay(chart: Chart) -> hv.Overlay:
         ylabel=textwrap.fill(chart.y.label, LABEL),
         xticks=ticks["x"],
         yticks=ticks["y"],
+        # Of a chart that fills the theme would enlarge them.
+        fontsize=SIZES,
         padding=(0.03, 0.1),
         responsive=True,
         height=HEIGHT,
@@ -244,7 +257,7 @@ def overlay(chart: Chart) -> hv.Overlay:
             "plot.toolbar.stylesheets": [UNPRINTED],
             "plot.toolbar_sticky": False,
             "xaxis.major_label_policy": NoOverlap(),
-            **texts,
+            **formatters,
         },
     )
 
@@ -284,25 +297,34 @@ def _ticks(axis: PanelAxis, values: Iterable[float]) -> list[Any] | Ticker:
     return BasicTicker()
 
 
-def _logarithmic_ticks(
-    axis: PanelAxis, values: Iterable[float]
-) -> list[tuple[float, str]] | Ticker:
-    """Ticks at 1, 2, 5, 10, ..., each with its text.
+def _logarithmic_ticks(axis: PanelAxis, values: Iterable[float]) -> Ticker:
+    """Ticks at 1, 2, 5, 10, ... of a logarithmic axis.
 
     Bokeh's own are few, or lie on one another. They are right for more than two
     decades; between two of these ticks those of a linear axis are.
     """
     known = np.array([value for value in values if value > 0.0])
-    if not known.size or known.max() > 100.0 * known.min():
+    # Of a chart that fills the curves do not go as far as its axis yet.
+    low, high = axis.limits or (known.min(initial=np.inf), known.max(initial=0.0))
+    if not 0.0 < low <= high <= LONGEST * low:
         return LogTicker(num_minor_ticks=10)
-    low, high = axis.limits or (known.min(), known.max())
     first = math.floor(math.log10(low))
     powers = 10.0 ** np.arange(first, first + 4)
     ticks = np.outer(powers, [1.0, 2.0, 5.0]).ravel()
     inside = ticks[(ticks > 0.999 * low) & (ticks < 1.001 * high)]
     if len(inside) < 2:
         return BasicTicker()
-    return [(tick, number(tick)) for tick in inside.tolist()]
+    return FixedTicker(ticks=inside.tolist())
+
+
+def _formatter(axis: PanelAxis, ticks: list[Any] | Ticker) -> TickFormatter:
+    """What writes the numbers at the ticks of an axis: plain ones, or powers of ten.
+
+    A text for each tick would stay in the browser as the ticks of a chart change.
+    """
+    if axis.logarithmic and isinstance(ticks, LogTicker):
+        return LogTickFormatter()
+    return BasicTickFormatter()
 
 
 def _table(runs: Runs) -> pd.DataFrame:

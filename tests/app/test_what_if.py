@@ -66,6 +66,31 @@ def test_why_a_run_has_no_answer_is_told_in_the_words_of_the_page() -> None:
     refused = "The first refused: Pull above the tail force cannot be 2 kN: lower it"
     assert refused in made.message.object
     assert "Allowed: tensions of both ends" in made.message.object
+    # What one points at in the chart says the same.
+    (said,) = (said for said in made.chart().runs.said if "refused" in said)
+    assert said.endswith(made.message.object.partition("The first refused: ")[2])
+
+
+@pytest.mark.usefixtures("here")
+def test_a_run_that_takes_too_long_is_told_without_options_of_the_command_line(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(jobs, "LIMIT", 0.0)
+    made = asked(Question(("friction=0.2:0.4:3",), "dissipation"))
+    assert "3 stuck" in made.message.object
+    for text in (made.message.object, *made.chart().runs.said):
+        assert "longer than the 60 s" in text
+        assert "--limit" not in text
+
+
+@pytest.mark.usefixtures("here")
+def test_another_scene_with_a_setting_of_the_same_name_has_runs_of_its_own() -> None:
+    made = asked(Question(("friction=0.2:0.4:3",), "dissipation"))
+    strand = CATALOGUE["strand"]().replace(**SMALL["strand"])
+    made.state.settings = strand
+    assert made.question == Question(("friction=0.2:0.4:3",), "dissipation")
+    made.sweep.thread.join()
+    assert made.sweep.plan.settings.scene == "strand"
 
 
 @pytest.mark.usefixtures("here")
