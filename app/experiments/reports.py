@@ -110,6 +110,10 @@ class CommandTab(ABC):
             self.job.cancel()
             self.look()
 
+    def forget(self) -> None:
+        """Forget the last report."""
+        self._done.pop(self.report, None)
+
     def end(self) -> None:
         """End the command and remove its files."""
         if self.job is not None:
