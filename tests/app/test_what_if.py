@@ -277,3 +277,19 @@ def test_a_report_is_read_with_its_files_and_its_links_lead_here(
     made.state.is_dark = True
     assert "color-scheme: dark" in made.page.object
     assert [file.filename for file in made.files] == ["proof.csv", "proof.html"]
+
+
+def test_a_study_of_other_settings_says_so(made: reports.Reports) -> None:
+    made.kind.value = "Study"
+    made.start()
+    settings = made.state.settings
+    stale = "of other settings"
+    assert stale not in made.words
+    made.state.settings = settings.replace(friction=0.41)
+    assert stale in made.words
+    # Others are of no settings of the page.
+    made.kind.value = "Proof"
+    assert stale not in made.words
+    made.kind.value = "Study"
+    made.state.settings = settings
+    assert stale not in made.words
