@@ -210,6 +210,15 @@ def test_lines_of_equal_value_are_of_round_numbers_and_lie_where_these_are(
         assert line["x"] * line["y"] == pytest.approx(line["z"], rel=0.05)
 
 
+def test_what_many_runs_have_in_common_has_no_line() -> None:
+    chart = chart_of(AREA, CELLS, logarithmic=False)
+    x, y = np.meshgrid(chart.x_values, chart.y_values)
+    flat = replace(chart, z=np.maximum(x - np.median(x), 0.0) * y)
+    lines = contours(flat)
+    assert lines
+    assert all(line["z"] > 0.0 for line in lines)
+
+
 def test_a_page_of_a_command_loads_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
