@@ -58,7 +58,9 @@ SIZES = {"title": "1.05em", "labels": "1em", "ticks": "0.925em"}
 UNPRINTED = "@media print { :host { display: none !important; } }"
 """Style sheet of what has no meaning on paper."""
 TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
-HOVER: dict[str, Any] = {"tools": ["hover"], "hover_tooltips": "@said"}
+SAID = '<div style="max-width: min(320px, 40vw); white-space: normal">@said</div>'
+"""What is said of a run where one points: why it failed takes several lines."""
+HOVER: dict[str, Any] = {"tools": ["hover"], "hover_tooltips": SAID}
 
 
 def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
@@ -355,7 +357,17 @@ def _of_panel(panel: Panel) -> Iterator[hv.Element]:
     table = runs.assign(y=runs["y"].where(known, top), **looks)
     by_column = {name: name for name in looks}
     dots = hv.Points(table, ["x", "y"], ["said", *looks])
-    yield dots.opts(**HOVER, **by_column, size=7, hit_dilation=2.0, line_width=1.6)
+    look = {"size": 7, "hit_dilation": 2.0, "line_width": 1.6, "hooks": [_unhovered]}
+    yield dots.opts(**HOVER, **by_column, **look)
+
+
+def _unhovered(plot: Any, _element: hv.Element) -> None:
+    """Have points look as ever while one points at one of them.
+
+    With another look for that one Bokeh would give the others the markers of their
+    neighbours.
+    """
+    plot.handles["glyph_renderer"].hover_glyph = None
 
 
 def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -52,6 +53,7 @@ class WhatIf:
         self._reasons: dict[int, str] = {}
         self._seen: tuple[int, bool] = 0, False
         self._job: Job | None = None
+        self._studied = "", state.settings
         self._is_updating = False
         self._make_fields()
         self._chart = LiveChart()
@@ -178,6 +180,8 @@ class WhatIf:
         self.mesh.visible = decides(settings, reading(self.question.of))
         self._start.disabled = False
         self._is_updating = False
+        if self._studied != (self.question.of, settings):
+            self._forget_meshes()
         # Other settings alone wait for the button: their runs may take long.
         is_asked = self.sweep is not None and self.question == before
         # Two scenes may have a setting with the same name and range.
@@ -243,8 +247,17 @@ class WhatIf:
             self._job.cancel()
         else:
             texts = {SETTINGS: dump(answer(self.state.settings))}
+            self._studied = self.question.of, self.state.settings
             self._job = Job(["mesh", SETTINGS, "--of", self.question.of], texts)
         self.look()
+
+    def _forget_meshes(self) -> None:
+        """End a study of meshes, and remove what it found for another question."""
+        if self._job is not None:
+            self._job.close()
+            self._job = None
+        self._meshed.object = ""
+        self.mesh.label = MESH
 
     def _draw(self) -> None:
         """Draw the chart of the runs so far, with a message."""
@@ -254,7 +267,7 @@ class WhatIf:
         self._cancel.visible = not sweep.is_over
         if sweep.is_over:
             words = counts(sweep.plan, sweep.rows)
-            words += _first_failure(self._rows_in_words())
+            words += _without_value(sweep) + _first_failure(self._rows_in_words())
         else:
             words = f"{sweep.progress}."
         if sweep.is_over and not _is_of(sweep.plan, self.question.asked(settings)):
@@ -265,6 +278,15 @@ class WhatIf:
                 sentences.append(text)
         self.message.object = " ".join(sentences).strip()
         self._chart.show(self.chart())
+
+
+def _without_value(sweep: Sweep) -> str:
+    """Sentence on converged runs whose quantity has no value, or ""."""
+    values = [row.values[0] for row in sweep.rows if row.holds]
+    count = sum(not math.isfinite(value) for value in values)
+    if count == 0:
+        return ""
+    return f" Without a value: {count} of the converged; point at one for the reason."
 
 
 def _first_failure(rows: Sequence[Row]) -> str:

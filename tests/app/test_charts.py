@@ -17,6 +17,7 @@ from bokeh.models import (
     ColorBar,
     ColumnDataSource,
     FixedTicker,
+    HoverTool,
     LogTicker,
     LogTickFormatter,
 )
@@ -126,6 +127,12 @@ def test_the_type_of_a_chart_that_fills_keeps_its_size() -> None:
 def test_a_run_that_did_not_converge_is_hollow_and_says_why() -> None:
     figure = draw(chart_of(LINES, ENDS))
     (runs,) = data_of(figure, "said")
+    # With a look of its own for a point that is pointed at, others change markers.
+    dots = [part for part in figure.renderers if "said" in part.data_source.data]
+    assert [part.hover_glyph for part in dots] == [None]
+    # Why a run failed would leave the window in one line.
+    (hover,) = figure.select({"type": HoverTool})
+    assert "white-space: normal" in hover.tooltips
     looks = dict(
         zip(
             runs["said"],

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 from contextlib import nullcontext
+from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from small_scenes import SMALL
 from sweeps import TINY, Here
 
-from app.experiments import jobs, reports
+from app.experiments import jobs, reports, whatif
 from app.experiments.jobs import Job, Sweep, share_of
 from app.experiments.questions import READY, Question, iterations_over_k, question_of
 from app.experiments.whatif import WhatIf
 from app.state import PageState, default_settings
+from app.widgets import PlainText
 from solver.scenes import CATALOGUE
 from solver.settings.scene import Settings
 
@@ -147,6 +151,38 @@ def test_meshes_are_asked_of_only_where_they_decide_the_answer() -> None:
     assert made.mesh.visible
     made.state.question = str(iterations_over_k(made.state.settings))
     assert not made.mesh.visible
+
+
+@pytest.mark.usefixtures("here")
+def test_what_was_found_of_meshes_goes_with_its_question(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    closed = []
+    job = SimpleNamespace(
+        progress="1 s: 20 elements: 0.4 J",
+        is_over=False,
+        close=lambda: closed.append("job"),
+    )
+    monkeypatch.setattr(whatif, "Job", lambda *arguments: job)
+    made = asked(LOADS)
+    made.mesh.clicks += 1
+    assert made.mesh.label == "No more"
+    made.state.settings = made.state.settings.replace(pressure=6000.0)
+    made.look()
+    assert closed == ["job"]
+    said = [str(part.object) for part in made.view.select(PlainText)]
+    assert not any("0.4 J" in text for text in said)
+    assert made.mesh.label == whatif.MESH
+
+
+@pytest.mark.usefixtures("here")
+def test_runs_that_never_get_where_one_asks_are_counted() -> None:
+    made = asked(LOADS)
+    assert "Without a value" not in made.message.object
+    rows = made.sweep.rows
+    rows[:2] = [replace(row, values=(math.inf,)) for row in rows[:2]]
+    made.state.param.trigger("tab")
+    assert "Without a value: 2 of the converged" in made.message.object
 
 
 def test_a_question_is_a_text_and_one_that_the_scene_does_not_have_is_energy() -> None:
