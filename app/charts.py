@@ -320,7 +320,7 @@ def _logarithmic_ticks(axis: PanelAxis, values: Iterable[float]) -> Ticker:
 
 
 def _formatter(axis: PanelAxis, ticks: list[Any] | Ticker) -> TickFormatter:
-    """What writes the numbers at the ticks of an axis: plain ones, or powers of ten.
+    """Formatter of the numbers at the ticks of an axis: plain, or powers of ten.
 
     A text for each tick would stay in the browser as the ticks of a chart change.
     """

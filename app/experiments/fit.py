@@ -107,7 +107,8 @@ class FitTab(CommandTab):
         brought = self.state.brought
         axes = axes_on(self.state)
         if not isinstance(brought, MeasuredLoop):
-            return NO_LOOP.format(*(title[0].lower() + title[1:] for title, _ in axes))
+            titles = [title[0].lower() + title[1:] for title, _ in axes]
+            return NO_LOOP.format(*titles)
         needed = " and ".join(f"{title} in {unit}" for title, unit in axes)
         found = " and ".join(brought.units)
         return (
