@@ -111,6 +111,12 @@ def test_the_ticks_of_a_chart_that_fills_go_as_far_as_its_axis() -> None:
     assert list(figure.yaxis.ticker.ticks) == [5.0, 10.0, 20.0]
 
 
+def test_a_setting_of_whole_numbers_has_ticks_at_these_alone() -> None:
+    plan = tiny(["cycles=1:3:3"], ["iterations"])
+    rows = [Row(number, "converged", "", (5.0,)) for number in range(3)]
+    assert list(draw(chart_of(plan, rows)).xaxis.ticker.ticks) == [1, 2, 3]
+
+
 def test_the_type_of_a_chart_that_fills_keeps_its_size() -> None:
     renderer = hv.renderer("bokeh").instance(theme="light_minimal")
     pipe = hv.streams.Pipe(data=PANEL)
