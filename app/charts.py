@@ -13,14 +13,23 @@ import numpy as np
 import pandas as pd
 import panel as pn
 from bokeh.embed import components
-from bokeh.models import BasicTicker, LogTicker, NoOverlap, Ticker
+from bokeh.models import (
+    BasicTicker,
+    BasicTickFormatter,
+    FixedTicker,
+    LogTicker,
+    LogTickFormatter,
+    NoOverlap,
+    Ticker,
+    TickFormatter,
+)
 from bokeh.palettes import Viridis256
 from bokeh.resources import Resources
 
 from app.templates import html
 from app.views.colors import REFERENCE
 from solver.arrays import Array
-from solver.files.amounts import number, unit_for
+from solver.files.amounts import unit_for
 from solver.study.page import (
     HUES,
     Chart,
@@ -40,12 +49,18 @@ LEVELS = 8
 """Number of contour lines on a map, about."""
 HEIGHT = 350
 """Height of a chart, px."""
+LONGEST = 150.0
+"""Ratio of the ends of the longest logarithmic axis with ticks at 1, 2, 5, 10, ..."""
 LABEL = 34
 """Characters of a line beside an axis."""
+SIZES = {"title": "1.05em", "labels": "1em", "ticks": "0.925em"}
+"""Type sizes: to Bokeh an em is 13 px, with and without the theme of the page."""
 UNPRINTED = "@media print { :host { display: none !important; } }"
 """Style sheet of what has no meaning on paper."""
 TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
-HOVER: dict[str, Any] = {"tools": ["hover"], "hover_tooltips": "@said"}
+SAID = '<div style="max-width: min(320px, 40vw); white-space: normal">@said</div>'
+"""What is said of a run where one points: why it failed takes several lines."""
+HOVER: dict[str, Any] = {"tools": ["hover"], "hover_tooltips": SAID}
 
 
 def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
@@ -212,11 +227,9 @@ def overlay(chart: Chart) -> hv.Overlay:
         x_limits = chart.x.limits or (None, None)
         y_limits = chart.y.limits or (None, None)
     ticks = {"x": _ticks(chart.x, xs), "y": _ticks(chart.y, ys)}
-    # A chart that fills would keep the texts of ticks that it began with, too.
-    texts = {
-        f"{name}axis.major_label_overrides": {}
-        for name, ticker in ticks.items()
-        if isinstance(ticker, Ticker)
+    formatters = {
+        f"{name}axis.formatter": _formatter(axis, ticks[name])
+        for name, axis in (("x", chart.x), ("y", chart.y))
     }
     # Whether axes follow a chart that fills is asked of elements, not of their overlay.
     return hv.Overlay([element.opts(framewise=True) for element in elements]).opts(
@@ -230,6 +243,8 @@ def overlay(chart: Chart) -> hv.Overlay:
         ylabel=textwrap.fill(chart.y.label, LABEL),
         xticks=ticks["x"],
         yticks=ticks["y"],
+        # Of a chart that fills the theme would enlarge them.
+        fontsize=SIZES,
         padding=(0.03, 0.1),
         responsive=True,
         height=HEIGHT,
@@ -244,7 +259,7 @@ def overlay(chart: Chart) -> hv.Overlay:
             "plot.toolbar.stylesheets": [UNPRINTED],
             "plot.toolbar_sticky": False,
             "xaxis.major_label_policy": NoOverlap(),
-            **texts,
+            **formatters,
         },
     )
 
@@ -284,25 +299,34 @@ def _ticks(axis: PanelAxis, values: Iterable[float]) -> list[Any] | Ticker:
     return BasicTicker()
 
 
-def _logarithmic_ticks(
-    axis: PanelAxis, values: Iterable[float]
-) -> list[tuple[float, str]] | Ticker:
-    """Ticks at 1, 2, 5, 10, ..., each with its text.
+def _logarithmic_ticks(axis: PanelAxis, values: Iterable[float]) -> Ticker:
+    """Ticks at 1, 2, 5, 10, ... of a logarithmic axis.
 
     Bokeh's own are few, or lie on one another. They are right for more than two
     decades; between two of these ticks those of a linear axis are.
     """
     known = np.array([value for value in values if value > 0.0])
-    if not known.size or known.max() > 100.0 * known.min():
+    # Of a chart that fills the curves do not go as far as its axis yet.
+    low, high = axis.limits or (known.min(initial=np.inf), known.max(initial=0.0))
+    if not 0.0 < low <= high <= LONGEST * low:
         return LogTicker(num_minor_ticks=10)
-    low, high = axis.limits or (known.min(), known.max())
     first = math.floor(math.log10(low))
     powers = 10.0 ** np.arange(first, first + 4)
     ticks = np.outer(powers, [1.0, 2.0, 5.0]).ravel()
     inside = ticks[(ticks > 0.999 * low) & (ticks < 1.001 * high)]
     if len(inside) < 2:
         return BasicTicker()
-    return [(tick, number(tick)) for tick in inside.tolist()]
+    return FixedTicker(ticks=inside.tolist())
+
+
+def _formatter(axis: PanelAxis, ticks: list[Any] | Ticker) -> TickFormatter:
+    """Formatter of the numbers at the ticks of an axis: plain, or powers of ten.
+
+    A text for each tick would stay in the browser as the ticks of a chart change.
+    """
+    if axis.logarithmic and isinstance(ticks, LogTicker):
+        return LogTickFormatter()
+    return BasicTickFormatter()
 
 
 def _table(runs: Runs) -> pd.DataFrame:
@@ -333,7 +357,17 @@ def _of_panel(panel: Panel) -> Iterator[hv.Element]:
     table = runs.assign(y=runs["y"].where(known, top), **looks)
     by_column = {name: name for name in looks}
     dots = hv.Points(table, ["x", "y"], ["said", *looks])
-    yield dots.opts(**HOVER, **by_column, size=7, hit_dilation=2.0, line_width=1.6)
+    look = {"size": 7, "hit_dilation": 2.0, "line_width": 1.6, "hooks": [_unhovered]}
+    yield dots.opts(**HOVER, **by_column, **look)
+
+
+def _unhovered(plot: Any, _element: hv.Element) -> None:
+    """Have points look as ever while one points at one of them.
+
+    With another look for that one Bokeh would give the others the markers of their
+    neighbours.
+    """
+    plot.handles["glyph_renderer"].hover_glyph = None
 
 
 def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:
@@ -429,4 +463,7 @@ def contours(chart: Map) -> list[dict[str, Any]]:
         powers = np.arange(first, last)
         levels = np.outer(10.0**powers, steps).ravel()
     values = hv.QuadMesh((chart.x_values, chart.y_values, chart.z))
-    return list(hv.operation.contours(values, levels=levels).data)
+    lines = hv.operation.contours(values, levels=levels).data
+    # Where many runs have the lowest value, as 0, its line would be anywhere.
+    rounding = 1e-6 * (high - low)
+    return [line for line in lines if low + rounding < line["z"] < high - rounding]

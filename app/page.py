@@ -346,6 +346,10 @@ class Page:
         if list(self._main) != main:
             self._main[:] = main
         self._main.css_classes = roles
+        is_projected = self.state.view == "present"
+        # The bar of a run leads back from it; other tabs keep the header for that.
+        is_bare = is_projected and self.state.tab == TABS[0]
+        self.template.sx = BARE if is_bare else COMPACT
 
     def _dress(self) -> None:
         """Arrange the plots of the lesson or view, and show or hide the controls.
@@ -356,7 +360,6 @@ class Page:
         self._place()
         self._read()
         self._live.arrange(kinds_beside(self.state))
-        self.template.sx = COMPACT if self.state.view == "page" else BARE
         self._show_controls()
 
     @property

@@ -10,10 +10,11 @@ import panel_material_ui as pmui
 
 from app.charts import LiveChart
 from app.experiments.jobs import OUT, SETTINGS
-from app.experiments.reports import LOOKS, Command, CommandTab
+from app.experiments.reports import LOOKS, Command, CommandTab, Files
 from app.files.opener import TableOpener
 from app.files.tables import TABLES, axes_on
 from app.state import TABS, PageState
+from app.units import unit_of
 from app.widgets import button
 from solver.files.saved import dump, settings_from_toml
 from solver.settings.definitions import title_of
@@ -23,8 +24,10 @@ from solver.study.fitted_settings import fittable
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.page import Panel, PanelAxis, PanelCurve
 
+DIGITS = 4
+"""Digits of a value while a fit runs."""
 NO_LOOP = (
-    "Open a measured loop: a table of displacement and force, with time if you have "
+    "Open a measured loop: a table of {} and {}, with time if you have "
     "it. It is drawn here, and on the plot Loop of the tab Live beside the run."
 )
 NO_SETTING = f"Tick up to {MOST} settings. They begin as they are set."
@@ -39,8 +42,10 @@ class FitTab(CommandTab):
         self.chosen = pmui.CheckBoxGroup(label="", inline=True, margin=(5, 6))
         self.use_button = button("Use these settings", self.use, icon="check", **LOOKS)
         self._chart = LiveChart()
+        self._fitted = state.settings, None
         super().__init__(state, "Fit", opener.view, self.chosen)
-        self.view.append(self._chart.view)
+        # Above a report: it is of the fit before while another one runs.
+        self.view.insert(self.view.index(self.page), self._chart.view)
         self.buttons.insert(1, self.use_button)
         self.chosen.param.watch(lambda event: self.show(), "value")
         self.show()
@@ -69,16 +74,46 @@ class FitTab(CommandTab):
         return arguments, {SETTINGS: dump(self.state.settings), file: loop.csv()}
 
     @property
+    def written(self) -> Files:
+        """Files of the last report, unless it is of another scene or loop."""
+        settings, loop = self._fitted
+        is_other = self.measured is not None and self.measured is not loop
+        if is_other or settings.scene != self.state.settings.scene:
+            return {}
+        return super().written
+
+    def start(self) -> None:
+        """Start the fit, and end a running one."""
+        if not self.written:
+            self.forget()
+        self._fitted = self.state.settings, self.measured
+        super().start()
+
+    @property
     def words(self) -> str:
         """Description of the fit, and of missing input."""
         missing = ""
         if self.measured is None:
-            missing = NO_LOOP
+            missing = self._missing_loop()
         elif not self.chosen.value:
             missing = NO_SETTING
         return (
             "Settings with which the run is as near to a measured loop as can be. "
             f"{missing}"
+        )
+
+    def _missing_loop(self) -> str:
+        """Sentence on the loop that is missing, or of another scene."""
+        brought = self.state.brought
+        axes = axes_on(self.state)
+        if not isinstance(brought, MeasuredLoop):
+            titles = [title[0].lower() + title[1:] for title, _ in axes]
+            return NO_LOOP.format(*titles)
+        needed = " and ".join(f"{title} in {unit}" for title, unit in axes)
+        found = " and ".join(brought.units)
+        return (
+            f"{brought.source} is of another scene: it has {found}, and a loop of this "
+            f"scene has {needed}."
         )
 
     def show(self) -> None:
@@ -95,15 +130,21 @@ class FitTab(CommandTab):
         self._draw()
 
     def said(self, progress: str) -> str:
-        """Progress with titles of settings in place of their keys before values."""
-        definitions = self.state.settings.definitions()
+        """Progress with titles of settings for their keys, and values in their units.
+
+        The settings are those of the fit: the page may show another scene by now.
+        """
+        definitions = self._fitted[0].definitions()
+        keys = "|".join(fittable(self._fitted[0]))
+
+        def titled(found: re.Match[str]) -> str:
+            definition = definitions[found[1]]
+            value = unit_of(definition)(float(found[2]), DIGITS)
+            return f"{title_of(definition)} {value}"
+
         # A refusal may have the same words in a sentence.
-        keys = "|".join(self.chosen.value)
-        return re.sub(
-            rf"(?<=[:,] )({keys})(?= -?\d)",
-            lambda found: title_of(definitions[found[1]]),
-            progress,
-        )
+        amounts = rf"(?<=[:,] )({keys}) (-?\d[\d.e+-]*)(?: [^\s,]+)?(?=,)"
+        return re.sub(amounts, titled, progress)
 
     def look(self) -> None:
         """Show the progress of the fit, and its nearest loop so far."""
@@ -129,7 +170,7 @@ class FitTab(CommandTab):
         curves = [
             PanelCurve("measured", measured.displacement, measured.force, 5, "points")
         ]
-        if self.job is not None:
+        if self.job is not None and self._fitted[1] is measured:
             # The command writes it again whenever it has come nearer.
             file = self.job.folder / OUT / LOOP
             if file.exists():

@@ -42,7 +42,8 @@ class CommandTab(ABC):
 
     `report` is the title of the chosen report; `page` shows its last result, and
     `files` has buttons that save its files. `job` is the command that is waiting or
-    runs, `buttons` are all buttons.
+    runs, `buttons` are all buttons. `asked` has the files that the commands of the
+    last reports read.
     """
 
     def __init__(self, state: PageState, tab: str, *fields: Any) -> None:
@@ -50,6 +51,7 @@ class CommandTab(ABC):
         self._tab = tab
         self.job: Job | None = None
         self._done: dict[str, Files] = {}
+        self.asked: dict[str, dict[str, str]] = {}
         self.start_button = button("Start", self.start, icon="play_arrow", **LOOKS)
         self.cancel_button = button(
             "Cancel", self.cancel, icon="stop", variant="outlined", **LOOKS
@@ -100,7 +102,9 @@ class CommandTab(ABC):
         """Start the command, and end a running one."""
         self.end()
         self._started = self.report
-        self.job = Job(*self.command)
+        arguments, texts = self.command
+        self._texts = texts
+        self.job = Job(arguments, texts)
         self.show()
         self.look()
 
@@ -109,6 +113,10 @@ class CommandTab(ABC):
         if self.job is not None:
             self.job.cancel()
             self.look()
+
+    def forget(self) -> None:
+        """Forget the last report."""
+        self._done.pop(self.report, None)
 
     def end(self) -> None:
         """End the command and remove its files."""
@@ -130,6 +138,7 @@ class CommandTab(ABC):
         # A report that failed leaves the one before in its place.
         if not job.failure:
             self._done[self._started] = job.files
+            self.asked[self._started] = self._texts
         self.end()
         self.show()
 
@@ -183,8 +192,13 @@ class Reports(CommandTab):
 
     @property
     def words(self) -> str:
-        """Description of the chosen report."""
-        return WORDS[self.report]
+        """Description of the chosen report, and whether it is of other settings."""
+        words = WORDS[self.report]
+        arguments, texts = self.command
+        asked = self.asked.get(self.report, texts)
+        if SETTINGS in arguments and asked != texts:
+            words += " The one below is of other settings."
+        return words
 
 
 def framed(files: Files, *, is_dark: bool) -> str:

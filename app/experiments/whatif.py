@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -9,7 +11,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.charts import LiveChart
-from app.experiments.jobs import SETTINGS, Job, Sweep, follow
+from app.experiments.jobs import LIMIT, SETTINGS, Job, Sweep, follow
 from app.experiments.questions import (
     READY,
     TENTH,
@@ -29,8 +31,9 @@ from solver.study.mesh import decides
 from solver.study.page import Chart
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.sweep.charts import chart_of
-from solver.study.sweep.plan import Plan
+from solver.study.sweep.plan import Plan, Row
 from solver.study.sweep.report import counts
+from solver.study.sweep.run import TOO_LONG
 from solver.study.sweep.table import csv_of
 
 MESH = "Is the mesh fine enough?"
@@ -47,8 +50,10 @@ class WhatIf:
         self.state = state
         self.question = Question((), "")
         self.sweep: Sweep | None = None
+        self._reasons: dict[int, str] = {}
         self._seen: tuple[int, bool] = 0, False
         self._job: Job | None = None
+        self._studied = "", state.settings
         self._is_updating = False
         self._make_fields()
         self._chart = LiveChart()
@@ -103,6 +108,7 @@ class WhatIf:
             self.message.object = refusal
             return
         self.cancel()
+        self._reasons = {}
         self.sweep = Sweep(self.question.plan(self.state.settings))
         self._draw()
 
@@ -141,15 +147,18 @@ class WhatIf:
     def chart(self) -> Chart:
         """The chart of the runs so far."""
         plan = self.sweep.plan
-        # Its thread continues to append to them.
-        rows = list(self.sweep.rows)
         is_log = SCALES[self._scale.value]
-        chart = chart_of(plan, rows, 0, logarithmic=is_log)
-        if chart.runs is None:
-            return chart
-        # Advice on runs that failed names settings as scripts do.
-        said = [advice_in_titles(plan.settings, text) for text in chart.runs.said]
-        return replace(chart, runs=replace(chart.runs, said=said))
+        return chart_of(plan, self._rows_in_words(), 0, logarithmic=is_log)
+
+    def _rows_in_words(self) -> list[Row]:
+        """The rows so far, each with its reason in the words of the page."""
+        rows = []
+        # Its thread continues to append to them.
+        for row in list(self.sweep.rows):
+            if row.number not in self._reasons:
+                self._reasons[row.number] = _reason(self.sweep.plan, row)
+            rows.append(replace(row, reason=self._reasons[row.number]))
+        return rows
 
     def _show(self) -> None:
         """Show and run the question, or a ready one if the scene lacks its terms.
@@ -171,11 +180,15 @@ class WhatIf:
         self.mesh.visible = decides(settings, reading(self.question.of))
         self._start.disabled = False
         self._is_updating = False
+        if self._studied != (self.question.of, settings):
+            self._forget_meshes()
         # Other settings alone wait for the button: their runs may take long.
-        if self.sweep is None or self.question != before:
-            self.start()
-        else:
+        is_asked = self.sweep is not None and self.question == before
+        # Two scenes may have a setting with the same name and range.
+        if is_asked and self.sweep.plan.settings.scene == settings.scene:
             self._draw()
+        else:
+            self.start()
 
     def _show_quantity(self, settings: Settings) -> None:
         """Show the quantity of the question, and its parameter if any."""
@@ -234,8 +247,17 @@ class WhatIf:
             self._job.cancel()
         else:
             texts = {SETTINGS: dump(answer(self.state.settings))}
+            self._studied = self.question.of, self.state.settings
             self._job = Job(["mesh", SETTINGS, "--of", self.question.of], texts)
         self.look()
+
+    def _forget_meshes(self) -> None:
+        """End a study of meshes, and remove what it found for another question."""
+        if self._job is not None:
+            self._job.close()
+            self._job = None
+        self._meshed.object = ""
+        self.mesh.label = MESH
 
     def _draw(self) -> None:
         """Draw the chart of the runs so far, with a message."""
@@ -244,7 +266,8 @@ class WhatIf:
         self._seen = len(sweep.rows), sweep.is_over
         self._cancel.visible = not sweep.is_over
         if sweep.is_over:
-            words = counts(sweep.plan, sweep.rows) + _first_failure(sweep)
+            words = counts(sweep.plan, sweep.rows)
+            words += _without_value(sweep) + _first_failure(self._rows_in_words())
         else:
             words = f"{sweep.progress}."
         if sweep.is_over and not _is_of(sweep.plan, self.question.asked(settings)):
@@ -257,19 +280,38 @@ class WhatIf:
         self._chart.show(self.chart())
 
 
-def _first_failure(sweep: Sweep) -> str:
-    """Sentence on the first run of a sweep without an answer, or ""."""
-    failed = [row for row in sweep.rows if not row.holds]
+def _without_value(sweep: Sweep) -> str:
+    """Sentence on converged runs whose quantity has no value, or ""."""
+    values = [row.values[0] for row in sweep.rows if row.holds]
+    count = sum(not math.isfinite(value) for value in values)
+    if count == 0:
+        return ""
+    return f" Without a value: {count} of the converged; point at one for the reason."
+
+
+def _first_failure(rows: Sequence[Row]) -> str:
+    """Sentence on the first run without an answer, or ""."""
+    failed = [row for row in rows if not row.holds]
     if not failed:
         return ""
-    plan = sweep.plan
     first = min(failed, key=lambda row: row.number)
-    reason = advice_in_titles(plan.settings, first.reason)
+    return f" The first {first.ending}: {first.reason}"
+
+
+def _reason(plan: Plan, row: Row) -> str:
+    """Reason of a run without an answer, in the words of the page.
+
+    The row has names and units of scripts, and advice for the command line.
+    """
+    if row.holds:
+        return row.reason
+    if row.reason == TOO_LONG:
+        return f"It took longer than the {LIMIT:g} s that a run of a chart may take."
     try:
-        plan.settings_at(first.number)
+        plan.settings_at(row.number)
     except RefusedError as refusal:
-        reason = message_of(refusal, plan.settings)
-    return f" The first {first.ending}: {reason}"
+        return message_of(refusal, plan.settings)
+    return advice_in_titles(plan.settings, row.reason)
 
 
 def _is_of(plan: Plan, settings: Settings) -> bool:

@@ -134,7 +134,11 @@ def plot_table(view: View) -> str:
         heads["x"] = view.figure.title.text
     for axis in view.figure.yaxis[:1]:
         heads["y"] = (axis.axis_label or "y").replace("\n", " ")
-    return pd.concat(tables).rename(columns=heads).to_csv(index=False)
+    table = pd.concat(tables).infer_objects()
+    # Frames have no more digits: 0.1 would be 0.10000000149.
+    floats = table.select_dtypes("float").columns
+    table = table.astype(dict.fromkeys(floats, "float32"))
+    return table.rename(columns=heads).to_csv(index=False)
 
 
 def offers(state: PageState, views: Sequence[View]) -> list[Any]:

@@ -158,11 +158,36 @@ def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
     tab.end()
 
 
+def test_a_report_of_a_fit_is_there_with_its_scene_and_its_loop_alone() -> None:
+    state = PageState(bar(), tab="Fit")
+    tab = FitTab(state)
+    state.brought = loop_of_a_run(bar())
+    tab.chosen.value = ["friction"]
+    tab.start()
+    while tab.job is not None:
+        time.sleep(0.1)
+        tab.look()
+    assert tab.use_button.visible
+    fitted = state.settings
+    state.settings = default_settings("rope")
+    assert not tab.use_button.visible
+    assert not tab.page.object
+    assert "made.csv is of another scene: it has m and N" in tab.words
+    state.settings = fitted
+    assert "standard error" in tab.page.object
+    state.brought = loop_of_a_run(bar(friction=0.37))
+    assert not tab.page.object
+    assert not tab.files.objects
+    tab.end()
+
+
 def test_progress_has_titles_of_settings_and_sentences_keep_their_words() -> None:
     tab = FitTab(PageState(bar(), tab="Fit"))
-    tab.chosen.value = ["friction", "peak"]
-    said = tab.said("8 runs: friction 0.37, peak -900 N, 2 % away")
-    assert said == "8 runs: Friction coefficient μ 0.37, Peak load -900 N, 2 % away"
+    said = tab.said("8 runs: friction 0.37, peak -900 N, young 1.9e+11 Pa, 2 % away")
+    assert said == (
+        "8 runs: Friction coefficient μ 0.37, Peak load −900 N, "
+        "Young's modulus E 190 GPa, 2 % away"
+    )
     sentence = "The loop is of no peak: friction changes nothing"
     assert tab.said(sentence) == sentence
 

@@ -23,7 +23,7 @@ import app.supervisor
 from app.browser import Browser
 from app.lessons.catalogue import LESSONS, settings_of
 from app.messages import WHOLE, Needs, NewFrame, Order, Pace, Start
-from app.page import Page, open_page
+from app.page import BARE, COMPACT, Page, open_page
 from app.server import PAGES, share_looks
 from app.state import PageState, default_settings
 from app.status import status_line
@@ -196,6 +196,16 @@ def test_what_a_person_does_ends_a_first_visit_before_the_browser_hears_of_it(
     page.state.is_new = True
     page.state.drag("peak", 1000.0)
     assert not page.state.is_new
+
+
+@pytest.mark.usefixtures("document")
+def test_a_projected_tab_keeps_the_header_unless_the_bar_of_a_run_leads_back() -> None:
+    page = Page(PageState(default_settings("bar"), view="present"))
+    assert page.template.sx == BARE
+    page.state.tab = "Fit"
+    assert page.template.sx == COMPACT
+    page.state.tab = "Live"
+    assert page.template.sx == BARE
 
 
 @pytest.mark.usefixtures("orders", "document")

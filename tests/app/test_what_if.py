@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 from contextlib import nullcontext
+from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from small_scenes import SMALL
 from sweeps import TINY, Here
 
-from app.experiments import jobs, reports
+from app.experiments import jobs, reports, whatif
 from app.experiments.jobs import Job, Sweep, share_of
 from app.experiments.questions import READY, Question, iterations_over_k, question_of
 from app.experiments.whatif import WhatIf
 from app.state import PageState, default_settings
+from app.widgets import PlainText
 from solver.scenes import CATALOGUE
 from solver.settings.scene import Settings
 
@@ -66,6 +70,31 @@ def test_why_a_run_has_no_answer_is_told_in_the_words_of_the_page() -> None:
     refused = "The first refused: Pull above the tail force cannot be 2 kN: lower it"
     assert refused in made.message.object
     assert "Allowed: tensions of both ends" in made.message.object
+    # What one points at in the chart says the same.
+    (said,) = (said for said in made.chart().runs.said if "refused" in said)
+    assert said.endswith(made.message.object.partition("The first refused: ")[2])
+
+
+@pytest.mark.usefixtures("here")
+def test_a_run_that_takes_too_long_is_told_without_options_of_the_command_line(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(jobs, "LIMIT", 0.0)
+    made = asked(Question(("friction=0.2:0.4:3",), "dissipation"))
+    assert "3 stuck" in made.message.object
+    for text in (made.message.object, *made.chart().runs.said):
+        assert "longer than the 60 s" in text
+        assert "--limit" not in text
+
+
+@pytest.mark.usefixtures("here")
+def test_another_scene_with_a_setting_of_the_same_name_has_runs_of_its_own() -> None:
+    made = asked(Question(("friction=0.2:0.4:3",), "dissipation"))
+    strand = CATALOGUE["strand"]().replace(**SMALL["strand"])
+    made.state.settings = strand
+    assert made.question == Question(("friction=0.2:0.4:3",), "dissipation")
+    made.sweep.thread.join()
+    assert made.sweep.plan.settings.scene == "strand"
 
 
 @pytest.mark.usefixtures("here")
@@ -122,6 +151,38 @@ def test_meshes_are_asked_of_only_where_they_decide_the_answer() -> None:
     assert made.mesh.visible
     made.state.question = str(iterations_over_k(made.state.settings))
     assert not made.mesh.visible
+
+
+@pytest.mark.usefixtures("here")
+def test_what_was_found_of_meshes_goes_with_its_question(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    closed = []
+    job = SimpleNamespace(
+        progress="1 s: 20 elements: 0.4 J",
+        is_over=False,
+        close=lambda: closed.append("job"),
+    )
+    monkeypatch.setattr(whatif, "Job", lambda *arguments: job)
+    made = asked(LOADS)
+    made.mesh.clicks += 1
+    assert made.mesh.label == "No more"
+    made.state.settings = made.state.settings.replace(pressure=6000.0)
+    made.look()
+    assert closed == ["job"]
+    said = [str(part.object) for part in made.view.select(PlainText)]
+    assert not any("0.4 J" in text for text in said)
+    assert made.mesh.label == whatif.MESH
+
+
+@pytest.mark.usefixtures("here")
+def test_runs_that_never_get_where_one_asks_are_counted() -> None:
+    made = asked(LOADS)
+    assert "Without a value" not in made.message.object
+    rows = made.sweep.rows
+    rows[:2] = [replace(row, values=(math.inf,)) for row in rows[:2]]
+    made.state.param.trigger("tab")
+    assert "Without a value: 2 of the converged" in made.message.object
 
 
 def test_a_question_is_a_text_and_one_that_the_scene_does_not_have_is_energy() -> None:
@@ -252,3 +313,19 @@ def test_a_report_is_read_with_its_files_and_its_links_lead_here(
     made.state.is_dark = True
     assert "color-scheme: dark" in made.page.object
     assert [file.filename for file in made.files] == ["proof.csv", "proof.html"]
+
+
+def test_a_study_of_other_settings_says_so(made: reports.Reports) -> None:
+    made.kind.value = "Study"
+    made.start()
+    settings = made.state.settings
+    stale = "of other settings"
+    assert stale not in made.words
+    made.state.settings = settings.replace(friction=0.41)
+    assert stale in made.words
+    # Others are of no settings of the page.
+    made.kind.value = "Proof"
+    assert stale not in made.words
+    made.kind.value = "Study"
+    made.state.settings = settings
+    assert stale not in made.words

@@ -64,7 +64,14 @@ def _scale(
 
 def _axis(varied: Varied) -> PanelAxis:
     """Axis of a varied setting."""
-    return PanelAxis(varied.title, varied.unit, varied.logarithmic, names=varied.names)
+    return PanelAxis(
+        varied.title,
+        varied.unit,
+        varied.logarithmic,
+        names=varied.names,
+        # Between 1 and 2 cycles there is none.
+        whole=all(type(value) is int for value in varied.values),
+    )
 
 
 def _map(
