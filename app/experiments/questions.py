@@ -250,7 +250,8 @@ def _is_taken(question: Question, settings: Settings) -> bool:
     """Check whether the scene takes the values at all ends of a question's ranges."""
     try:
         plan = plan_of(settings, question.vary, [question.of])
-        for levels in product(*[(0, count - 1) for count in plan.shape]):
+        ends = [(0, count - 1) for count in plan.shape]
+        for levels in product(*ends):
             plan.settings_at(int(np.ravel_multi_index(levels, plan.shape)))
     except RefusedError:
         return False

@@ -187,6 +187,23 @@ def test_runs_that_never_get_where_one_asks_are_counted() -> None:
     assert "Without a value: 2 of the converged" in made.message.object
 
 
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize("vary", [LOADS.vary, ("friction=0.2:0.4:3", "peak=600:900:7")])
+def test_runs_that_a_logarithmic_scale_does_not_have_are_counted(
+    vary: tuple[str, ...],
+) -> None:
+    made = asked(Question(vary, "dissipation"))
+    rows = made.sweep.rows
+    rows[:2] = [replace(row, values=(0.0,)) for row in rows[:2]]
+    made.state.param.trigger("tab")
+    assert "logarithmic scale" not in made.message.object
+    made._scale.value = "logarithmic"
+    off = "Not on a logarithmic scale: 2 of value 0 or less."
+    assert off in made.message.object
+    made._scale.value = "linear"
+    assert off not in made.message.object
+
+
 def test_a_question_is_a_text_and_one_that_the_scene_does_not_have_is_energy() -> None:
     settings = tiny()
     assert question_of(str(LOADS), settings) == LOADS

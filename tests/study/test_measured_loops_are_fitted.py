@@ -410,8 +410,10 @@ def test_a_page_on_a_fit_has_the_units_of_controls_and_of_the_file(tmp_path) -> 
     settings = scene_settings("bar").checked(SPRUNG | FEW)
     run = finished_run(settings.replace(young=2.69e11), errors=False, indicators=False)
     rows = zip(1e6 * run.displacement, 1e-3 * run.force, strict=True)
-    lines = ["Weg [µm],Kraft [kN]", *(f"{u},{f}" for u, f in rows)]
-    opened = in_text("\n".join(lines), settings.structure().axes)
+    lines = [f"{u},{f}" for u, f in rows]
+    opened = in_text(
+        "\n".join(["Weg [µm],Kraft [kN]", *lines]), settings.structure().axes
+    )
     # The page hands a loop that it has opened to the command as a table.
     table = opened.csv()
     assert table.startswith("displacement [µm],force [kN]\n")
