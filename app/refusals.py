@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from app.units import unit_of, units_of_points
-from solver.files.amounts import Unit, number
+from app.units import units_of_points
+from solver.files.amounts import Unit, number, unit_of
 from solver.refusal import RefusedError, Words
 from solver.settings.definitions import CurveParameter, properties_of, title_of
 from solver.settings.scene import Settings

@@ -12,8 +12,8 @@ import param
 from app.echoes import Echoes
 from app.files.points import CurveDialog
 from app.state import PageState
-from app.units import unit_of
 from app.widgets import button, looks
+from solver.files.amounts import unit_of
 from solver.files.typed import typed_amount
 from solver.settings.definitions import (
     CurveParameter,

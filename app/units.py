@@ -5,26 +5,14 @@ from __future__ import annotations
 import math
 from functools import cache
 
-import param
-
 from solver.files.amounts import Unit, number, unit_for
 from solver.scenes import CATALOGUE
-from solver.settings.definitions import Parameter, properties_of
 
 OTHER_SIZES = {"Pa": 1e6, "m": 1e-3}
 """Typical values, in SI, of a path whose default points are of another quantity."""
 ROUNDING = 1e-7
 """Share of the largest value of its kind below which a value is rounding: frames have
 seven digits."""
-
-
-def unit_of(definition: Parameter) -> Unit:
-    """The unit of a setting on the page, by its default value or range."""
-    unit = properties_of(definition).unit
-    if not isinstance(definition, param.Number):
-        return Unit(unit)
-    size = abs(definition.default) or max(map(abs, definition.softbounds))
-    return unit_for(size, unit)
 
 
 @cache

@@ -14,8 +14,8 @@ from app.experiments.reports import LOOKS, Command, CommandTab, Files
 from app.files.opener import TableOpener
 from app.files.tables import TABLES, axes_on
 from app.state import TABS, PageState
-from app.units import unit_of
 from app.widgets import button
+from solver.files.amounts import unit_of
 from solver.files.saved import dump, settings_from_toml
 from solver.settings.definitions import title_of
 from solver.study.fit import MOST

@@ -6,8 +6,10 @@ import contextlib
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
+import numpy as np
 import param
 
 from app.refusals import message_of
@@ -32,6 +34,25 @@ COARSE = 10
 """Numbers of values of a range, and along each side of a map."""
 TENTH = 0.1
 HUNDREDTH = 0.01
+SHARES = (
+    1.0,
+    0.9,
+    0.8,
+    0.7,
+    0.6,
+    0.5,
+    0.4,
+    0.3,
+    0.2,
+    0.1,
+    0.07,
+    0.05,
+    0.03,
+    0.02,
+    0.01,
+)
+"""Shares of a slider that the values of a load may end at, from the largest on: a belt
+or a wire carries less than its slider has."""
 COURSES = (4, 6, 8, 10)
 """Numbers of courses of bricks that are compared: all runs take less than a minute."""
 
@@ -191,26 +212,50 @@ def _bricks(settings: Settings) -> Question | None:
 def _energy(settings: Settings, count: int, *others: str) -> Question | None:
     """Question of energy over load and other settings, over a decade of sliders.
 
-    There is no question (None) where no number sets the size of the load, or another
-    setting does nothing. A positive load that varies alone has values of even ratios.
+    The decade ends where the scene takes all its values. There is no question (None)
+    where no number sets the size of the load, another setting does nothing, or no
+    decade is taken. A positive load that varies alone has values of even ratios.
     """
     known = variable(settings)
     numbers = [name for name in known if isinstance(known[name], param.Number)]
     load = _load_of(settings, numbers)
     if load is None or not set(others) <= set(numbers):
         return None
-    vary = []
-    for name in (*others, load):
-        low, high = known[name].softbounds
-        # Towards the end of the slider that has the sign of the present value.
-        if getattr(settings, name) >= 0.0:
-            end = high
-        else:
-            end = low
-        low, high = sorted((TENTH * end, end))
-        is_log = not others and end > 0.0
-        vary.append(_range(name, low, high, count, is_log=is_log))
-    return Question(tuple(vary), "dissipation")
+    fixed = [_decade(settings, name, 1.0, count, is_log=False) for name in others]
+    for share in SHARES:
+        varied = _decade(settings, load, share, count, is_log=not others)
+        question = Question((*fixed, varied), "dissipation")
+        if _is_taken(question, settings):
+            return question
+    return None
+
+
+def _decade(
+    settings: Settings, name: str, share: float, count: int, *, is_log: bool
+) -> str:
+    """Text of a decade of values, up to a share of an end of the slider.
+
+    It is the end that has the sign of the present value.
+    """
+    low, high = settings.definitions()[name].softbounds
+    if getattr(settings, name) >= 0.0:
+        end = share * high
+    else:
+        end = share * low
+    low, high = sorted((TENTH * end, end))
+    return _range(name, low, high, count, is_log=is_log and end > 0.0)
+
+
+def _is_taken(question: Question, settings: Settings) -> bool:
+    """Check whether the scene takes the values at all ends of a question's ranges."""
+    try:
+        plan = plan_of(settings, question.vary, [question.of])
+        ends = [(0, count - 1) for count in plan.shape]
+        for levels in product(*ends):
+            plan.settings_at(int(np.ravel_multi_index(levels, plan.shape)))
+    except RefusedError:
+        return False
+    return True
 
 
 def _load_of(settings: Settings, numbers: list[str]) -> str | None:

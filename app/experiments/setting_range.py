@@ -11,7 +11,7 @@ import panel_material_ui as pmui
 import param
 
 from app.experiments.questions import names_of, proposed, variable
-from app.units import unit_of
+from solver.files.amounts import unit_of
 from solver.files.typed import typed_amount
 from solver.settings.definitions import properties_of, title_of
 from solver.settings.scene import Settings

@@ -28,7 +28,7 @@ from solver.files.saved import dump
 from solver.refusal import RefusedError
 from solver.settings.scene import Settings
 from solver.study.mesh import decides
-from solver.study.page import Chart
+from solver.study.page import Chart, Map
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.sweep.charts import chart_of
 from solver.study.sweep.plan import Plan, Row
@@ -263,11 +263,13 @@ class WhatIf:
         """Draw the chart of the runs so far, with a message."""
         sweep = self.sweep
         settings = self.state.settings
+        chart = self.chart()
         self._seen = len(sweep.rows), sweep.is_over
         self._cancel.visible = not sweep.is_over
         if sweep.is_over:
             words = counts(sweep.plan, sweep.rows)
-            words += _without_value(sweep) + _first_failure(self._rows_in_words())
+            words += _without_value(sweep) + _off_scale(sweep, chart)
+            words += _first_failure(self._rows_in_words())
         else:
             words = f"{sweep.progress}."
         if sweep.is_over and not _is_of(sweep.plan, self.question.asked(settings)):
@@ -277,7 +279,7 @@ class WhatIf:
             if READY[title](settings) == self.question:
                 sentences.append(text)
         self.message.object = " ".join(sentences).strip()
-        self._chart.show(self.chart())
+        self._chart.show(chart)
 
 
 def _without_value(sweep: Sweep) -> str:
@@ -287,6 +289,20 @@ def _without_value(sweep: Sweep) -> str:
     if count == 0:
         return ""
     return f" Without a value: {count} of the converged; point at one for the reason."
+
+
+def _off_scale(sweep: Sweep, chart: Chart) -> str:
+    """Sentence on runs that the scale of their chart does not have, or ""."""
+    axis = chart.y
+    if isinstance(chart, Map):
+        axis = chart.scale
+    if not axis.logarithmic:
+        return ""
+    # Infinity is never reached: such runs are without a value.
+    count = sum(row.values[0] <= 0.0 for row in sweep.rows)
+    if count == 0:
+        return ""
+    return f" Not on a logarithmic scale: {count} of value 0 or less."
 
 
 def _first_failure(rows: Sequence[Row]) -> str:

@@ -20,14 +20,13 @@ from app.frame import Run, Selection
 from app.state import PageState
 from app.status import figures_line, status_line
 from app.templates import TEMPLATES
-from app.units import unit_of
 from app.views.layout import shape_of
 from app.views.pieces import PiecesView
 from app.views.scene import Scene
 from app.views.type_size import TEXT
 from app.views.view import View
 from app.worker.cells import thinned
-from solver.files.amounts import unit_for
+from solver.files.amounts import unit_for, unit_of
 from solver.files.saved import dump
 from solver.settings.definitions import Parameter, title_of
 from solver.settings.scene import Settings

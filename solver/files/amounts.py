@@ -5,6 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import param
+
+from solver.settings.definitions import Parameter, properties_of
+
 PREFIXES = {"n": 1e-9, "µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
 PREFIXED = ("m", "N", "Pa", "J", "N/m", "N/m^2", "N/m^3", "N·m", "N·m/m", "rad")
 """Units that take a prefix."""
@@ -58,6 +62,16 @@ def unit_for(size: float, unit: str) -> Unit:
             chosen = name
             factor = unit_size
     return Unit(chosen, factor)
+
+
+def unit_of(definition: Parameter) -> Unit:
+    """The unit of a setting for readers, by its default value or range."""
+    unit = properties_of(definition).unit
+    if not isinstance(definition, param.Number):
+        return Unit(unit)
+    ends = [abs(end) for end in definition.softbounds or () if end is not None]
+    size = abs(definition.default) or max(ends)
+    return unit_for(size, unit)
 
 
 def number(value: float, digits: int = 3) -> str:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from solver.files.amounts import Unit, unit_of
 from solver.files.disk import write
 from solver.files.saved import dump
 from solver.scenes.shared import listed
@@ -46,24 +47,48 @@ def lines(fit: Fit, measured: MeasuredLoop) -> list[str]:
     ]
 
 
-def _keys(fit: Fit) -> dict[str, str]:
-    """Keys of the fitted settings, as commands and files have them, by themselves."""
-    return {name: name for name in fit.names}
+@dataclass(frozen=True)
+class Called:
+    """Name of a setting for a reader, and the unit in which its values are given."""
+
+    name: str
+    unit: Unit
+
+    def amount(self, value: float, digits: int) -> str:
+        """Text of a value in SI, with the unit."""
+        return f"{self.figure(value, digits)} {self.unit.name}".rstrip()
+
+    def figure(self, value: float, digits: int = 6) -> str:
+        """Text of a value in SI, in the unit but without it."""
+        return f"{value / self.unit.factor:.{digits}g}"
 
 
-def _titles(fit: Fit) -> dict[str, str]:
-    """Titles of the fitted settings, as the page has them, by their keys."""
+def _keys(fit: Fit) -> dict[str, Called]:
+    """Keys and SI units of the fitted settings, as commands have them, by key."""
     definitions = fit.settings.definitions()
-    return {name: title_of(definitions[name]) for name in fit.names}
+    called = {}
+    for name in fit.names:
+        called[name] = Called(name, Unit(properties_of(definitions[name]).unit))
+    return called
 
 
-def messages(fit: Fit, called: Mapping[str, str] | None = None) -> list[str]:
+def _titles(fit: Fit) -> dict[str, Called]:
+    """Titles and units of the fitted settings, as the page has them, by key."""
+    definitions = fit.settings.definitions()
+    called = {}
+    for name in fit.names:
+        called[name] = Called(title_of(definitions[name]), unit_of(definitions[name]))
+    return called
+
+
+def messages(fit: Fit, called: Mapping[str, Called] | None = None) -> list[str]:
     """Sentences on settings that are not determined, and on the nearest run.
 
-    `called` has the names of settings for a reader, by their keys; by default these.
+    `called` has the names and units of settings for a reader, by their keys; by default
+    these keys and SI.
     """
     called = called or _keys(fit)
-    sentences = [_known(combination, called) for combination in fit.together]
+    sentences = [known(combination, called) for combination in fit.together]
     sentences += _lost(fit, called)
     sentences += _bounds(fit, called)
     sentences += _for_the_mesh(fit, called)
@@ -78,12 +103,12 @@ def messages(fit: Fit, called: Mapping[str, str] | None = None) -> list[str]:
     return sentences
 
 
-def _lost(fit: Fit, called: Mapping[str, str]) -> list[str]:
+def _lost(fit: Fit, called: Mapping[str, Called]) -> list[str]:
     """Sentence on settings that are not determined, if any."""
     lost = []
     for name, error in zip(fit.names, fit.errors, strict=True):
         if math.isinf(error):
-            lost.append(called[name])
+            lost.append(called[name].name)
     if not lost:
         return []
     names = listed(lost)
@@ -98,12 +123,12 @@ def _lost(fit: Fit, called: Mapping[str, str]) -> list[str]:
     ]
 
 
-def _for_the_mesh(fit: Fit, called: Mapping[str, str]) -> list[str]:
+def _for_the_mesh(fit: Fit, called: Mapping[str, Called]) -> list[str]:
     """Sentence on settings that errors of the mesh hide, if any."""
     hidden = []
     for name, is_hidden in zip(fit.names, fit.for_the_mesh, strict=True):
         if is_hidden:
-            hidden.append(called[name])
+            hidden.append(called[name].name)
     if not hidden:
         return []
     return [
@@ -113,43 +138,59 @@ def _for_the_mesh(fit: Fit, called: Mapping[str, str]) -> list[str]:
     ]
 
 
-def _known(combination: Combination, called: Mapping[str, str]) -> str:
+def known(combination: Combination, called: Mapping[str, Called]) -> str:
     """Sentence on a determined combination of undetermined settings."""
     if math.isnan(combination.value):
-        parts = [called[name] for name in combination.powers]
+        parts = [called[name].name for name in combination.powers]
         return f"Only a combination of {listed(parts)} is known."
     margin = 100.0 * combination.error
-    ends = f"from {combination.lower:.4g} to {combination.upper:.4g}"
-    product = _product(combination, called)
+    size = 1.0
+    for name, power in combination.powers.items():
+        size *= called[name].unit.factor ** power
+    ends = f"from {combination.lower / size:.4g} to {combination.upper / size:.4g}"
     return (
-        f"Only {product} is known: {combination.value:.6g} in SI units, "
+        f"Only {_product(combination, called)} is known: "
+        f"{combination.value / size:.6g} {_units(combination, called)}, "
         f"with a standard error of {margin:.2g} % ({ends} with two), as long as each "
         f"stays within a factor of {combination.factor:g} of its value here."
     )
 
 
-def _product(combination: Combination, called: Mapping[str, str]) -> str:
+def _product(combination: Combination, called: Mapping[str, Called]) -> str:
     """Text of a product of powers of settings."""
     factors = []
     for name, power in combination.powers.items():
         if power == 1.0:
-            factors.append(called[name])
+            factors.append(called[name].name)
         else:
-            factors.append(f"{called[name]}^{power:g}")
+            factors.append(f"{called[name].name}^{power:g}")
     return " * ".join(factors)
 
 
-def _bounds(fit: Fit, called: Mapping[str, str]) -> list[str]:
+def _units(combination: Combination, called: Mapping[str, Called]) -> str:
+    """Words on the units in which the parts of a combination are given."""
+    units = [called[name].unit for name in combination.powers]
+    if all(unit.factor == 1.0 for unit in units):
+        return "in SI units"
+    named = []
+    for name in combination.powers:
+        setting = called[name]
+        if setting.unit.name:
+            named.append(f"{setting.name} in {setting.unit.name}")
+    return f"with {listed(named)}"
+
+
+def _bounds(fit: Fit, called: Mapping[str, Called]) -> list[str]:
     """Sentences on settings of which only one end is known."""
     sentences = []
     for name, lower, upper in zip(fit.names, fit.lower, fit.upper, strict=True):
-        unit = properties_of(fit.settings.definitions()[name]).unit
+        setting = called[name]
         if math.isfinite(lower) and math.isinf(upper):
-            bound = f"{called[name]} is at least {lower:.3g} {unit}"
-            sentences.append(bound.rstrip() + ".")
+            bound = setting.amount(lower, 3)
+            sentences.append(f"{setting.name} is at least {bound}.")
         elif math.isfinite(upper) and math.isinf(lower):
-            bound = f"{called[name]} is at most {upper:.3g} {unit}"
-            sentences.append(bound.rstrip() + ".")
+            bound = setting.amount(upper, 3)
+            sentences.append(f"{setting.name} is at most {bound}.")
     return sentences
 
 
@@ -172,24 +213,25 @@ def _percent(distance: float) -> str:
     return f"{100.0 * distance:.4g} %"
 
 
-def _rows(fit: Fit, called: Mapping[str, str]) -> list[list[str]]:
+def _rows(fit: Fit, called: Mapping[str, Called]) -> list[list[str]]:
     """Table of the settings: value, standard error, ends and correlations."""
     others: tuple[str, ...] = ()
     if len(fit.names) > 1:
         others = fit.names
     head = ["setting", "value", "standard error", "two of them: from", "to", "start"]
-    table = [head + [f"with {called[name]}" for name in others]]
-    for name, unit, start, value, error, lower, upper, *correlation in _entries(fit):
+    table = [head + [f"with {called[name].name}" for name in others]]
+    for name, _, start, value, error, lower, upper, *correlation in _entries(fit):
+        setting = called[name]
         shown = "not known alone"
         if math.isfinite(error):
-            shown = f"{error:.2g}"
+            shown = setting.figure(error, 2)
         cells = [
-            called[name],
-            f"{value:.6g} {unit}".strip(),
+            setting.name,
+            setting.amount(value, 6),
             shown,
-            _end(lower),
-            _end(upper),
-            f"{start:.6g}",
+            _end(lower, setting),
+            _end(upper, setting),
+            setting.figure(start),
         ]
         if others:
             cells += [_correlation(value) for value in correlation]
@@ -205,11 +247,11 @@ def _correlation(value: float) -> str:
     return f"{value + 0.0:.2f}"
 
 
-def _end(value: float) -> str:
+def _end(value: float, setting: Called) -> str:
     """Text of a value at two standard errors."""
     if math.isinf(value):
         return "-"
-    return f"{value:.6g}"
+    return setting.figure(value)
 
 
 def _entries(fit: Fit) -> list[list[Any]]:

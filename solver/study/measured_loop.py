@@ -32,7 +32,7 @@ from solver.discrete.problem import Problem
 from solver.discrete.structure import Axes, Loop
 from solver.files.columns import KINDS, TableColumn
 from solver.files.tables import Table
-from solver.files.units import unit_doubt
+from solver.files.units import size_in, unit_doubt
 from solver.settings.values import SettingError
 from solver.study.comparison import FEWEST, in_si
 from solver.study.quantities.cycles import SMALLEST_SWING, turning_points
@@ -63,6 +63,8 @@ class MeasuredLoop:
     bare
         Names of the columns of displacement and force where the file gives no unit,
         else empty.
+    given
+        Units of displacement, force and time in the file, empty where it gives none.
     """
 
     displacement: Array
@@ -72,6 +74,7 @@ class MeasuredLoop:
     source: str
     message: str
     bare: tuple[str, str] = ("", "")
+    given: tuple[str, str, str] = ("", "", "")
 
     def unit_doubts(self, displacement: Array, force: Array) -> list[str]:
         """Sentences on columns that seem thousand times too large or small for a run.
@@ -92,14 +95,28 @@ class MeasuredLoop:
         return [doubt for doubt in doubts if doubt]
 
     def csv(self) -> str:
-        """Table of the loop as CSV, which `loop_in` reads."""
+        """Table of the loop as CSV in the units of the file, which `loop_in` reads."""
         across, up = self.units
-        columns = {}
+        own_across, own_up, own_time = self.given
+        columns: dict[str, Array] = {}
         if self.times is not None:
-            columns["time [s]"] = self.times
-        columns[f"displacement [{across}]"] = self.displacement
-        columns[f"force [{up}]"] = self.force
+            columns |= _in_own("time", self.times, "s", own_time)
+        columns |= _in_own("displacement", self.displacement, across, own_across)
+        columns |= _in_own("force", self.force, up, own_up)
         return csv_of(columns)
+
+
+def _in_own(name: str, values: Array, si: str, own: str) -> dict[str, Array]:
+    """A column by its head, from values in SI, (n_rows,), in a unit of its own if any.
+
+    Plain numbers, of the units 1 and -, are as in SI.
+    """
+    size = None
+    if own.strip("-1"):
+        size = size_in(own, si)
+    if size is None:
+        return {f"{name} [{si}]": values}
+    return {f"{name} [{own}]": values / size}
 
 
 def csv_of(columns: Mapping[str, Array]) -> str:
@@ -166,6 +183,7 @@ def loop_in(table: Table, axes: Axes) -> MeasuredLoop:
         source=table.source,
         message=message,
         bare=(_bare(across), _bare(up)),
+        given=(across.unit, up.unit, time.unit if time else ""),
     )
 
 

@@ -117,6 +117,17 @@ def test_a_setting_of_whole_numbers_has_ticks_at_these_alone() -> None:
     assert list(draw(chart_of(plan, rows)).xaxis.ticker.ticks) == [1, 2, 3]
 
 
+@pytest.mark.parametrize("height", [280.0, 240.0])
+def test_a_point_at_zero_is_seen_whole(height: float) -> None:
+    plan = tiny(["friction=0:0.7:8"], ["peak_displacement"])
+    rows = [Row(n, "converged", "", (1e-3 * n,)) for n in range(plan.size)]
+    figure = draw(chart_of(plan, rows))
+    # A point has 7 px across.
+    for ends in (figure.x_range, figure.y_range):
+        assert -ends.start / (ends.end - ends.start) * height > 3.5
+        assert ends.start > -0.05 * ends.end
+
+
 def test_the_type_of_a_chart_that_fills_keeps_its_size() -> None:
     renderer = hv.renderer("bokeh").instance(theme="light_minimal")
     pipe = hv.streams.Pipe(data=PANEL)

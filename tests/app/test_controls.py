@@ -19,8 +19,7 @@ from app.messages import Start
 from app.refusals import advice_in_titles
 from app.setting_control import POINTS, SettingControl
 from app.state import PageState, default_settings
-from app.units import unit_of
-from solver.files.amounts import Unit
+from solver.files.amounts import Unit, unit_of
 from solver.files.typed import typed_amount
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE

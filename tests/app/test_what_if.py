@@ -18,8 +18,10 @@ from app.experiments import jobs, reports, whatif
 from app.experiments.jobs import Job, Sweep, share_of
 from app.experiments.questions import READY, Question, iterations_over_k, question_of
 from app.experiments.whatif import WhatIf
+from app.lessons.catalogue import CASES
 from app.state import PageState, default_settings
 from app.widgets import PlainText
+from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings.scene import Settings
 
@@ -185,6 +187,23 @@ def test_runs_that_never_get_where_one_asks_are_counted() -> None:
     assert "Without a value: 2 of the converged" in made.message.object
 
 
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize("vary", [LOADS.vary, ("friction=0.2:0.4:3", "peak=600:900:7")])
+def test_runs_that_a_logarithmic_scale_does_not_have_are_counted(
+    vary: tuple[str, ...],
+) -> None:
+    made = asked(Question(vary, "dissipation"))
+    rows = made.sweep.rows
+    rows[:2] = [replace(row, values=(0.0,)) for row in rows[:2]]
+    made.state.param.trigger("tab")
+    assert "logarithmic scale" not in made.message.object
+    made._scale.value = "logarithmic"
+    off = "Not on a logarithmic scale: 2 of value 0 or less."
+    assert off in made.message.object
+    made._scale.value = "linear"
+    assert off not in made.message.object
+
+
 def test_a_question_is_a_text_and_one_that_the_scene_does_not_have_is_energy() -> None:
     settings = tiny()
     assert question_of(str(LOADS), settings) == LOADS
@@ -215,6 +234,33 @@ def test_each_ready_question_can_be_asked_or_is_not_offered(scene: str) -> None:
     for question in offered:
         assert question.refusal(settings) == ""
         assert question_of(str(question), settings) == question
+
+
+def refused(settings: Settings) -> list[str]:
+    """Ready questions some of whose values settings refuse, with the first of these."""
+    found = []
+    for make in READY.values():
+        question = make(settings)
+        if question is None:
+            continue
+        plan = question.plan(settings)
+        for number in range(plan.size):
+            try:
+                plan.settings_at(number)
+            except RefusedError as refusal:
+                found.append(f"{question}: {refusal}")
+                break
+    return found
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_a_scene_takes_all_values_of_its_ready_questions(scene: str) -> None:
+    assert refused(default_settings(scene)) == []
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_case_takes_all_values_of_its_ready_questions(name: str) -> None:
+    assert refused(CASES[name].settings) == []
 
 
 def test_iterations_are_counted_of_the_search_and_all_else_is_taken_of_the_answer() -> (

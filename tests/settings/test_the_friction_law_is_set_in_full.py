@@ -7,7 +7,7 @@ import pytest
 from refusals import assert_names, refusal
 from small_scenes import KINDS, SMALL
 
-from app.units import unit_of
+from solver.files.amounts import unit_of
 from solver.files.saved import settings_from_command
 from solver.latin import solve
 from solver.laws import FrictionLaw

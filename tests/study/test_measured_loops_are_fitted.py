@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from functools import cache
 
 import numpy as np
@@ -11,12 +12,14 @@ from bars import SMALL
 from small_scenes import SMALL as SMALL_SCENES
 
 from solver.commands.cli import main
+from solver.files.amounts import Unit
 from solver.files.saved import scene_settings, settings_from_toml
 from solver.files.tables import read_table
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError
-from solver.study.fit import _correlation, fit
-from solver.study.fit_report import messages
+from solver.study import fit_report
+from solver.study.fit import Combination, _correlation, fit
+from solver.study.fit_report import Called, messages, write_fit
 from solver.study.measured_loop import (
     CAN,
     LoopComparison,
@@ -401,6 +404,36 @@ def _written(folder):
     measured = made({"friction": 0.37, "contact_stiffness": 8.0}, settings, 0.01)
     table.write_text(measured.csv())
     return table, [f"--set={name}={value}" for name, value in sizes.items()]
+
+
+def test_a_page_on_a_fit_has_the_units_of_controls_and_of_the_file(tmp_path) -> None:
+    settings = scene_settings("bar").checked(SPRUNG | FEW)
+    run = finished_run(settings.replace(young=2.69e11), errors=False, indicators=False)
+    rows = zip(1e6 * run.displacement, 1e-3 * run.force, strict=True)
+    lines = [f"{u},{f}" for u, f in rows]
+    opened = in_text(
+        "\n".join(["Weg [µm],Kraft [kN]", *lines]), settings.structure().axes
+    )
+    # The page hands a loop that it has opened to the command as a table.
+    table = opened.csv()
+    assert table.startswith("displacement [µm],force [kN]\n")
+    measured = in_text(table, settings.structure().axes)
+    assert measured.displacement == pytest.approx(run.displacement, rel=1e-8)
+    assert measured.force == pytest.approx(run.force, rel=1e-8)
+    write_fit(fit(settings, measured, ["young"]), measured, tmp_path)
+    page = (tmp_path / "fit.html").read_text()
+    text = page.partition("<body")[2].partition("<pre>")[0]
+    assert "displacement in µm, force in kN" in text
+    assert re.search(r">269(\.\d+)? GPa<", text)
+    assert not re.search(r"\d+e[+-]\d+</td>| Pa<", text)
+
+
+def test_what_is_known_together_is_in_the_units_of_its_parts() -> None:
+    both = Combination({"friction": 1.0, "young": 0.5}, 3e5, 2.9e5, 3.1e5, 2.0)
+    called = {"friction": Called("μ", Unit("")), "young": Called("E", Unit("GPa", 1e9))}
+    sentence = fit_report.known(both, called)
+    assert sentence.startswith("Only μ * E^0.5 is known: 9.48683 with E in GPa, ")
+    assert "(from 9.171 to 9.803 with two)" in sentence
 
 
 def test_the_commands_compare_and_fit_and_write_what_they_found(

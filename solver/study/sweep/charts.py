@@ -20,6 +20,8 @@ DECADES = 30.0
 """Ratio of the largest to the smallest value from which a chart is logarithmic."""
 MARGIN = 0.06
 """Share of the values' range that is added to an axis on either side."""
+ROOM = 0.02
+"""Share of an axis from zero that is added below zero: there a point is seen whole."""
 NONE = "none: a run with these settings has no such value"
 
 
@@ -142,7 +144,7 @@ def grid(plan: Plan, rows: Sequence[Row], index: int) -> Array:
 
 
 def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
-    """Limits of an axis: of values, (n,), with a margin, or from zero if near."""
+    """Limits of an axis: of values, (n,), with a margin, or from about zero if near."""
     # What a logarithmic axis cannot show does not widen it.
     known = values[np.isfinite(values) & ((values > 0.0) | (not axis.logarithmic))]
     if not known.size:
@@ -156,7 +158,7 @@ def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
         return (low / factor, high * factor)
     margin = MARGIN * (high - low) or abs(high) / 2.0 or 1.0
     if 0.0 <= low < margin:
-        return (0.0, high + margin)
+        return (-ROOM * (high + margin), high + margin)
     return (low - margin, high + margin)
 
 
