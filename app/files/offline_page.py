@@ -76,6 +76,8 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
         end=len(columns) - 1,
         value=selected,
         title="Instant",
+        # The text below says which instant it is.
+        show_value=False,
         sizing_mode="stretch_width",
     )
     instant = Div(text="", render_as_text=True, sizing_mode="stretch_width")
@@ -103,6 +105,7 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
         template_variables={
             "library": library("bokeh-widgets"),
             "is_dark": is_dark,
+            "widest": WIDEST,
             "sentence": run.sentence,
             "status": status_line(state),
             "plots": {
