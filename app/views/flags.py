@@ -44,7 +44,7 @@ class Place(NamedTuple):
     y_offset: float
 
 
-class Flag:
+class CaseFlag:
     """The mark of the known number of a case in a plot, a point or a line, with a name.
 
     Parameters

@@ -22,7 +22,7 @@ from app.views.colors import (
     UNSEEN,
     scaled,
 )
-from app.views.flags import Flag
+from app.views.flags import CaseFlag
 from app.views.parts import gapped, hover
 from app.views.view import ExtraView, View
 from app.worker.cells import thinned
@@ -57,7 +57,7 @@ class HysteresisLoop(View):
         self.add("beside", color=BESIDE, width=2, dash="dashed")
         latin = self.add("LATIN", color=LATIN, width=2.5)
         self.add("now", "Scatter", color=ERROR, size=10)
-        self.flag = Flag(self, plot)
+        self.flag = CaseFlag(self, plot)
         self.legend("LATIN", "reference", "ghost", "beside", exact="closed form")
         hover(plot, [latin], {"displacement": "@x{0.000}", "force": "@y{0.000}"})
 
@@ -191,7 +191,7 @@ class CycleEnergy(CyclePlot):
         plot = self.begin(("cycle",), ("energy", "J"))
         whole(plot.xaxis[0])
         bars = self.add("bars", "VBar", "x top color", width=0.7)
-        self.flag = Flag(self, plot)
+        self.flag = CaseFlag(self, plot)
         self._add_legend()
         hover(plot, [bars], {"cycle": "@x", "energy": "@top{0.000}"})
 
