@@ -23,8 +23,10 @@ where the engine took the bond as broken (both measured)."""
 
 
 @dataclass(frozen=True)
-class InterfaceFields:
-    """Fields at the points of an interface, shape (n_points, n_instants), scaled.
+class JudgedFields:
+    """Fields at the points of an interface that its laws judge, scaled.
+
+    Shape (n_points, n_instants).
 
     Attributes
     ----------
@@ -114,7 +116,7 @@ class InterfaceFields:
 
 def interface_fields(
     problem: Problem, displacement: Array, force: Array, held: Indices
-) -> list[InterfaceFields]:
+) -> list[JudgedFields]:
     """Fields of every interface with contact.
 
     By displacements (n_dofs, n_instants) and contact forces (n_forces, n_instants),
@@ -136,7 +138,7 @@ def interface_fields(
             opening = across + law.mean_by_point(law.normal.gap)[:, None]
             opening = _with_spring(law, opening, pressing, law.normal.compliance)
             is_prescribed[law.points] = _is_held(problem, law.normal.component, held)
-        fields = InterfaceFields(
+        fields = JudgedFields(
             law=law,
             slider=_with_spring(law, jump, friction, law.tangential.compliance),
             friction=friction,
