@@ -68,14 +68,14 @@ def check(part: object, **kinds: Kind) -> None:
             words = owner.__name__
             if owner.__str__ is not object.__str__:
                 words = str(part)
-            raise _refusal(f"{words}.{name}", value, flaw)
+            raise _refusal(f"{words}.{name}", flaw)
 
 
 def check_value(name: str, value: object, kind: Kind) -> None:
     """Refuse a value that is not of a kind; the message has its name."""
     flaw = kind.flaw(value)
     if flaw is not None:
-        raise _refusal(name, value, flaw)
+        raise _refusal(name, flaw)
 
 
 def checked_copies(part: Made, count: int, **fields: Sequence[object]) -> list[Made]:
@@ -96,11 +96,11 @@ def checked_copies(part: Made, count: int, **fields: Sequence[object]) -> list[M
     return parts
 
 
-def _refusal(name: str, value: object, flaw: Flaw) -> RefusedError:
+def _refusal(name: str, flaw: Flaw) -> RefusedError:
     """Refusal of a value with a flaw."""
-    shown: object = Words(value)
-    if flaw.shown is not None:
-        shown = flaw.shown
+    shown = flaw.shown
+    if shown is None:
+        shown = Words(None)
     return RefusedError(name, shown, flaw.allowed, flaw.remedy)
 
 

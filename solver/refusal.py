@@ -9,6 +9,10 @@ from typing import Any, TypeGuard
 
 NUMBER = float | Real
 """Types of numbers; floats first, as an abstract class is slow to ask."""
+LONGEST = 60
+LONGEST_WORDS = 240
+"""Largest number of letters of a value that are shown, and of a description, whose end
+may be what is wrong."""
 
 
 class Words(str):
@@ -22,8 +26,11 @@ class RefusedError(ValueError):
 
     def __init__(self, name: str, value: object, allowed: str, remedy: str) -> None:
         shown = _shown(value)
-        if len(shown) > 60:
-            shown = shown[:57] + "..."
+        longest = LONGEST
+        if isinstance(value, Words):
+            longest = LONGEST_WORDS
+        if len(shown) > longest:
+            shown = shown[: longest - 3] + "..."
         super().__init__(f"{name} = {shown} is refused; allowed: {allowed}; {remedy}")
         self.name = name
         self.value = value

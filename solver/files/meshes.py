@@ -8,7 +8,7 @@ from typing import Any
 
 from solver.discrete.plane.makers.named_mesh_refused import check_named
 from solver.files.disk import LARGEST, read_bytes, too_large
-from solver.refusal import RefusedError, Words
+from solver.refusal import LONGEST, RefusedError, Words
 from solver.scenes.mesh_files import ABAQUS, CAN, GMSH, HEAD, as_text, read_mesh
 from solver.settings.definitions import TextParameter
 from solver.settings.scene import Settings
@@ -35,15 +35,24 @@ def text_of_mesh(data: bytes, source: str, name: str = "mesh") -> str:
         return as_text(mesh)
     except RefusedError as refusal:
         value = refusal.value
-        found = f"{source}: {refusal.name} {value}"
+        file = _short(source)
+        found = f"{file}: {refusal.name} {value}"
         if refusal.name == name:
-            found = f"{source} {value}"
+            found = f"{file} {value}"
         if value == source:
             # A file that cannot be read is refused as a whole.
             found = source
         raise SettingError(
             name, Words(found), refusal.allowed, refusal.remedy
         ) from None
+
+
+def _short(name: str) -> str:
+    """Name of a file; of a long one its beginning and end."""
+    if len(name) <= LONGEST:
+        return name
+    half = LONGEST // 2
+    return f"{name[:half]}...{name[-half:]}"
 
 
 def read_meshes(kind: type[Settings], values: dict[str, Any], folder: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from solver import discrete
+from solver.discrete.loose_bodies import LooseBodiesError
 from solver.discrete.problem import Problem
 from solver.scenes.arch import ArchSettings
 from solver.scenes.bar import BarSettings
@@ -38,6 +39,16 @@ CATALOGUE: dict[str, type[Settings]] = {
 
 
 def discretise(settings: Settings) -> Problem:
-    """Make the discrete problem of checked settings, with their loads and motions."""
-    problem = discrete.discretise(settings.structure())
+    """Make the discrete problem of checked settings, with their loads and motions.
+
+    Raises
+    ------
+    RefusedError
+        For bodies that nothing holds, as where a mesh of one's own has too few sides
+        that are held.
+    """
+    try:
+        problem = discrete.discretise(settings.structure())
+    except LooseBodiesError as refusal:
+        raise settings.of_loose(refusal) from None
     return problem.with_drives(settings.drives())

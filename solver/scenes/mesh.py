@@ -301,8 +301,7 @@ class MeshSettings(PlaneSettings):
 
     def _check_tables(self) -> None:
         """Refuse tables without a row for each body or contact."""
-        if self.n_interfaces:
-            shared.factors_of(self)
+        shared.factors_of(self)
         numbers = [row[0] for row in self.points("materials")]
         if numbers != list(range(1, self.n_bodies + 1)):
             names = ", ".join(self.parts.names)
@@ -311,6 +310,16 @@ class MeshSettings(PlaneSettings):
                 f"{self.n_bodies} rows, one for each body, numbered from 1",
                 f"there are {len(numbers)}: give those of {names}, in this order",
             )
+
+    def of_loose(self, refusal: RefusedError) -> RefusedError:
+        """Refusal of sides that leave bodies free."""
+        return SettingError(
+            "sides",
+            Words(f"with {refusal.value}"),
+            "sides that leave no body free to move or to turn, where all contacts are "
+            "closed and stick",
+            "hold one more side, or one along the other axis, too",
+        )
 
     def left_out(self) -> Iterator[str]:
         """Yield sentences on names and rows of tables that a run ignores."""
@@ -369,9 +378,7 @@ class MeshSettings(PlaneSettings):
 
     def _joints(self) -> Iterator[Joint]:
         """Contacts with their mu."""
-        factors = np.ones(0)
-        if self.n_interfaces:
-            factors = shared.factors_of(self)
+        factors = shared.factors_of(self)
         for contact, factor in zip(self.parts.contacts, factors, strict=True):
             yield Joint(
                 contact.name,
@@ -385,20 +392,17 @@ class MeshSettings(PlaneSettings):
 
     def sentence(self) -> str:
         """Describe the bodies in a sentence."""
-        bodies = f"{self.n_bodies} bodies"
-        if self.n_bodies == 1:
-            bodies = "One body"
         touch = "slide freely on each other"
         if self.is_rough:
             touch = "rub on each other"
-        if not self.n_interfaces:
-            touch = "touch nothing"
         parts = []
         for line, conditions in self.conditions.items():
             if conditions and conditions != ("free",):
                 said = [re.sub(r" ([xy])$", r" along \1", each) for each in conditions]
                 parts.append(f"“{split_phrase(line)[0]}” {' and '.join(said)}")
-        return f"{bodies} of a mesh {touch}; sides: {shared.listed(parts)}."
+        return (
+            f"{self.n_bodies} bodies of a mesh {touch}; sides: {shared.listed(parts)}."
+        )
 
 
 def _of_setting(name: str, refusal: RefusedError) -> SettingError:

@@ -18,6 +18,7 @@ from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Structure
 from solver.reference.closed_forms import ExactCurve
+from solver.refusal import RefusedError
 from solver.settings.definitions import properties_of
 from solver.settings.load import LoadSettings
 from solver.settings.values import SettingError
@@ -84,6 +85,10 @@ class Settings(LoadSettings):
     def sentence(self) -> str:
         """Describe bodies, loads and friction in a sentence."""
         raise NotImplementedError
+
+    def of_loose(self, refusal: RefusedError) -> RefusedError:
+        """Refusal of loose bodies by the setting that is to hold them, if there is."""
+        return refusal
 
     def coarser(self) -> Iterator[Problem]:
         """Yield the same problem on ever coarser meshes, without cuts.

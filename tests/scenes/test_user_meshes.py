@@ -121,6 +121,12 @@ BROKEN = {
         two_squares(bodies=[1, 2, 1, 1], edges=[[0, 1]], lines=[4]),
         "a mesh of 2 pieces",
     ),
+    "one body": (
+        two_squares(
+            triangles=[[0, 1, 2], [0, 2, 3]], bodies=[1, 1], edges=[[0, 1]], lines=[4]
+        ),
+        "without a contact, of: lower",
+    ),
     "does not match": (
         two_squares(
             points=np.array(
@@ -157,6 +163,15 @@ def test_a_broken_mesh_is_refused_with_the_name_of_the_fault(
     assert refused.value.name == "mesh"
     assert words in message
     assert message.startswith("mesh.msh")
+
+
+def test_what_is_wrong_is_said_of_a_file_of_any_name(tmp_path: Path) -> None:
+    volumes, words = BROKEN["volumes"]
+    path = tmp_path / f"{'a_long_name_' * 15}.msh"
+    volumes.cell_data |= {"gmsh:geometrical": volumes.cell_data["gmsh:physical"]}
+    volumes.write(path, file_format="gmsh22")
+    with pytest.raises(SettingError, match=words):
+        text_of_mesh(path.read_bytes(), path.name)
 
 
 @pytest.mark.parametrize("data", [b"", b"no mesh", b"$MeshFormat\n4.1 0 8\n"])
@@ -298,6 +313,13 @@ def test_sides_do_as_their_names_say_or_as_they_are_told() -> None:
         conditions_of(lines, "roof held")
     with pytest.raises(RefusedError, match="rim fixed"):
         conditions_of(lines, "rim fixed")
+
+
+def test_sides_that_leave_bodies_free_are_refused_with_their_names() -> None:
+    settings = MESH.checked({"sides": "left held x, washers free"})
+    with pytest.raises(SettingError, match="middle plate, upper cover") as refused:
+        discretise(settings)
+    assert refused.value.name == "sides"
 
 
 def test_a_run_says_that_nothing_presses_what_lies_between_bodies() -> None:

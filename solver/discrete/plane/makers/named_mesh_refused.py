@@ -22,7 +22,7 @@ def check_named(mesh: NamedMesh) -> None:
     RefusedError
         For elements without area; for edges with a name that follow no element or run
         through a body; where bodies have common edges without a name, or touch with
-        nodes that do not match.
+        nodes that do not match; for a mesh without a contact.
     """
     named: set[tuple[int, int]] = set()
     for (name, bodies), edges in mesh.groups.items():
@@ -40,6 +40,14 @@ def check_named(mesh: NamedMesh) -> None:
             )
     for first, second in combinations(range(len(mesh.names)), 2):
         _check_overlap(mesh, first, second)
+    if not mesh.contacts:
+        names = ", ".join(mesh.names)
+        raise RefusedError(
+            "mesh",
+            Words(f"without a contact, of: {names}"),
+            "two bodies or more, and a line with a name where they touch",
+            "give each body a name of its own, and name the line between them",
+        )
 
 
 def _check_line(
