@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.frame import Frame
+from solver.refusal import RefusedError
 from solver.settings.scene import Settings
 from solver.study.comparison import OtherResults
 from solver.study.measured_loop import MeasuredLoop
@@ -104,10 +105,10 @@ class Costly:
 
 @dataclass(frozen=True)
 class Failed:
-    """Report that a run ended by an error."""
+    """Report that a run ended by an error: a sentence, or what the engine refuses."""
 
     number: int
-    text: str
+    problem: str | RefusedError
 
 
 @dataclass(frozen=True)

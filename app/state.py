@@ -140,6 +140,7 @@ class PageState(param.Parameterized):
     is_costly = param.Boolean(
         default=False, doc="Whether the run waits to be agreed to."
     )
+    has_failed = param.Boolean(default=False, doc="Whether the run ended by an error.")
 
     def __init__(self, settings: Settings, **values: Any) -> None:
         super().__init__(settings=settings, **values)
@@ -215,6 +216,8 @@ class PageState(param.Parameterized):
     @property
     def is_over(self) -> bool:
         """Check whether the last ordered run has ended."""
+        if self.has_failed:
+            return True
         newest = self.newest
         if newest is None or newest.run.number != self.number:
             return False
@@ -348,6 +351,7 @@ class PageState(param.Parameterized):
         self.show_stage(LINEAR)
         self.param.update(
             is_costly=False,
+            has_failed=False,
             message="",
             iteration=None,
             is_dragged=is_dragged,
@@ -395,8 +399,11 @@ class PageState(param.Parameterized):
                     f"This run would take about {text}: press ⚠ (or space) to run it "
                     "anyway, or choose fewer elements, instants or bodies."
                 )
-            case messages.Failed(number, text) if number == self.number:
-                self.message = text
+            case messages.Failed(number, problem) if number == self.number:
+                if isinstance(problem, RefusedError):
+                    # Some of it only the making of the bodies tells.
+                    problem = message_of(problem, self.settings)
+                self.param.update(message=problem, has_failed=True)
 
     def _show(self, frame: Frame) -> None:
         # A frame of a run before: its worker waits for an answer all the same.

@@ -66,7 +66,7 @@ def status_line(state: PageState) -> str:
     frame = state.frame
     newest = state.newest
     said = _said(state)
-    lead = "starting"
+    lead = _without_iterate(state)
     rest = ""
     details = []
     if frame is not None and newest is not None:
@@ -92,10 +92,21 @@ def spoken_status(state: PageState) -> str:
     return " ".join(sentences)
 
 
+def _without_iterate(state: PageState) -> str:
+    """State of a run of which there is no iterate yet."""
+    if state.has_failed:
+        return "not run"
+    if state.is_costly:
+        return "not run yet"
+    if state.frame is None:
+        return "starting"
+    return "solving …"
+
+
 def _progress(state: PageState, frame: Frame, newest: Frame) -> tuple[str, str]:
     """State of the run in bold, and its iterations and error."""
     if state.is_stale:
-        return "solving …", ""
+        return _without_iterate(state), ""
     # Before the first estimate nobody knows.
     wrong = ""
     if math.isfinite(frame.error):

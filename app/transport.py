@@ -85,6 +85,7 @@ class Transport:
             "newest",
             "running",
             "is_costly",
+            "has_failed",
             "pinned",
             "is_dragged",
         ]

@@ -90,8 +90,9 @@ class Thrust(ExtraScene):
 
     name = "Thrust"
     needs = frozenset({"thrust"})
+    # Between two joints, as of a bolt, there is a single line.
     applies = staticmethod(
-        lambda settings: settings.has_joints and settings.n_bodies > 2
+        lambda settings: settings.has_joints and settings.n_interfaces > 2
     )
 
     def _draw(self, plot: figure) -> None:

@@ -147,7 +147,9 @@ class WorkerLoop:
         """Call an action; report an error, which ends the run."""
         try:
             action(argument)
-        except (RefusedError, FloatingPointError) as problem:
+        except RefusedError as refusal:
+            self._fail(refusal)
+        except FloatingPointError as problem:
             self._fail(str(problem))
         except (OSError, EOFError):
             # The pipe is gone, and with it the page.
@@ -158,9 +160,9 @@ class WorkerLoop:
                 "setting, or lower the numbers of elements and instants."
             )
 
-    def _fail(self, text: str) -> None:
+    def _fail(self, problem: str | RefusedError) -> None:
         self._runner = None
-        self._send(messages.Failed(self._number, text))
+        self._send(messages.Failed(self._number, problem))
 
     def _is_superseded(self) -> bool:
         """Check whether another run is ordered."""

@@ -315,7 +315,7 @@ class MeshSettings(PlaneSettings):
         """Refusal of sides that leave bodies free."""
         return SettingError(
             "sides",
-            Words(f"with {refusal.value}"),
+            refusal.value,
             "sides that leave no body free to move or to turn, where all contacts are "
             "closed and stick",
             "hold one more side, or one along the other axis, too",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import pickle
 from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
@@ -17,12 +18,23 @@ import app.display
 from app.display import Display
 from app.frame import Frame
 from app.history import History
-from app.messages import Earlier, Needs, NewFrame, Ready, Show, Start, Step
+from app.messages import (
+    Costly,
+    Earlier,
+    Failed,
+    Needs,
+    NewFrame,
+    Ready,
+    Show,
+    Start,
+    Step,
+)
 from app.state import PageState, default_settings
 from app.status import status_line
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from app.worker.sampling import Sampler
+from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.settings.scene import Settings
 
@@ -270,6 +282,29 @@ def test_a_run_is_compared_with_none_of_another_structure(answer: Frame) -> None
     assert show(bar.replace(length=2.0)) is None
     assert show(bar.replace(length=2.0, left_end="spring")) is None
     assert show(bar.replace(length=2.0, left_end="spring", young=1e11)) is not None
+
+
+def test_a_run_that_the_engine_refuses_says_so_in_words_of_the_page() -> None:
+    state = PageState(default_settings("mesh"))
+    state.run()
+    assert "starting" in status_line(state)
+    assert state.change(sides="left held x, washers free")
+    with pytest.raises(RefusedError) as refused:
+        discretise(state.settings)
+    state.take(Failed(state.number, pickle.loads(pickle.dumps(refused.value))))
+    assert state.message.startswith("Sides cannot be displacements that leave free: ")
+    assert "not run" in status_line(state)
+    assert state.is_over
+    state.change(sides="")
+    assert not state.is_over
+    assert not state.message
+
+
+def test_a_run_that_waits_to_be_agreed_to_is_not_being_solved() -> None:
+    state = PageState(default_settings("bar"))
+    state.run()
+    state.take(Costly(state.number, "2 minutes"))
+    assert "not run yet" in status_line(state)
 
 
 def test_what_is_dragged_does_not_fade(answer: Frame) -> None:
