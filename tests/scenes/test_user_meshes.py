@@ -6,6 +6,7 @@ from typing import Any
 import meshio
 import numpy as np
 import pytest
+from runs import errors
 
 from solver.arrays import Array
 from solver.discrete.plane.makers.named_mesh import NamedMesh
@@ -313,6 +314,25 @@ def test_sides_do_as_their_names_say_or_as_they_are_told() -> None:
         conditions_of(lines, "roof held")
     with pytest.raises(RefusedError, match="rim fixed"):
         conditions_of(lines, "rim fixed")
+
+
+PULLED = {"sides": "top pulled", "traction": 2e7, "load": "triangle"}
+
+
+@pytest.mark.parametrize(
+    "values", [{}, {"mesh": "dovetail"}, {"mesh": "dovetail"} | PULLED]
+)
+def test_the_search_reaches_one_percent_on_meshes_with_the_usual_k(
+    values: dict[str, Any],
+) -> None:
+    settings = MESH.checked(values)
+    counts = []
+    for k_scale in (0.25, 1.0, 4.0):
+        wrong = errors(settings.replace(k_scale=k_scale), 60)
+        counts.append(int((wrong > 0.01).sum()))
+    assert settings.k_scale == 1.0
+    assert counts[1] < 50
+    assert counts[1] == min(counts)
 
 
 def test_sides_that_leave_bodies_free_are_refused_with_their_names() -> None:
