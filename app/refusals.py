@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from app.units import units_of_points
-from solver.files.amounts import Unit, number, unit_of
+from solver.files.amounts import Unit, number, unit_for, unit_of
 from solver.refusal import RefusedError, Words
 from solver.settings.definitions import CurveParameter, properties_of, title_of
 from solver.settings.scene import Settings
@@ -17,6 +17,8 @@ EXACT = 10
 LONGEST = 40
 """Largest number of characters of a refused text that are shown."""
 POWER = r"(?<![\w.])-?\d+(?:\.\d+)?e[-+]?\d+\b"
+AMOUNT = rf"({POWER}) (m|N|Pa|J)(?![\w/^·])"
+"""Amounts in SI that have a power of ten, which another unit makes readable."""
 NUMBER = r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.])"
 
 
@@ -98,10 +100,17 @@ def amounts_in_titles(settings: Settings, text: str) -> str:
     )
 
 
+def _in_suitable_unit(amount: str, si: str) -> str:
+    """An amount in an SI unit, in a unit of its size."""
+    value = float(amount)
+    return unit_for(abs(value), si)(value)
+
+
 def advice_in_titles(settings: Settings, text: str) -> str:
     """Advice on a run, with titles for names of settings, and powers as on the page."""
     definitions = settings.definitions()
     text = amounts_in_titles(settings, text)
+    text = re.sub(AMOUNT, lambda match: _in_suitable_unit(*match.groups()), text)
     text = re.sub(POWER, lambda match: number(float(match[0]), EXACT), text)
 
     def titled(match: re.Match[str]) -> str:

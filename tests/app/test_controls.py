@@ -192,6 +192,13 @@ def test_advice_on_a_run_has_the_names_of_the_page_and_keeps_its_other_words() -
     )
 
 
+def test_amounts_with_a_power_of_ten_are_in_a_unit_of_their_size() -> None:
+    remark = "some body up to 9.4e-06 m away, with 2e+05 N/m and 3e-9 of the force"
+    assert advice_in_titles(default_settings("bar"), remark) == (
+        "some body up to 9.4 µm away, with 200000 N/m and 3·10⁻⁹ of the force"
+    )
+
+
 def test_an_empty_field_is_the_default() -> None:
     state = of_scene("bar")
     control = SettingControl("peak", state)
