@@ -14,7 +14,7 @@ import struct
 import zipfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from tempfile import NamedTemporaryFile
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -87,17 +87,17 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
     end = Path(source).suffix.lower()
     if end == ABAQUS:
         data = for_meshio(data)
-    with NamedTemporaryFile(suffix=end) as file:
-        file.write(data)
-        file.flush()
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / f"mesh{end}"
         # It prints what it does not like, and then ends the program.
         said = io.StringIO()
         try:
+            file.write_bytes(data)
             with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
                 if end == GMSH:
-                    mesh = meshio.gmsh.read(file.name)
+                    mesh = meshio.gmsh.read(file)
                 else:
-                    mesh = meshio.read(file.name)
+                    mesh = meshio.read(file)
             return named(mesh)
         except RefusedError:
             raise
@@ -112,7 +112,7 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
             found = str(problem)
             if isinstance(problem, SystemExit):
                 found = said.getvalue()
-            reason = " ".join(found.replace(file.name, source).split())
+            reason = " ".join(found.replace(str(file), source).split())
             remedy = f"save it again as Gmsh's .msh, format 4.1 ({reason or 'unread'})"
             raise RefusedError("mesh", source, CAN, remedy) from None
 
