@@ -193,6 +193,9 @@ def held_instants(problem: Problem, contact_force: Array) -> Flags:
 
 def are_independent(columns: Array) -> bool:
     """Check whether the columns of a matrix, (n, m), are linearly independent."""
+    # Of no rows older versions of NumPy give no rank.
+    if len(columns) < columns.shape[1]:
+        return False
     squares = np.linalg.eigvalsh(columns.T @ columns)
     # Singular values are dearer, and distinguish columns that are nearly dependent.
     if squares[0] > SURE * squares[-1]:

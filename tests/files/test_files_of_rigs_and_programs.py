@@ -305,11 +305,12 @@ def test_a_cell_of_a_workbook_is_refused_with_its_row() -> None:
 def test_without_openpyxl_a_workbook_is_refused_with_what_to_do(
     monkeypatch: Any,
 ) -> None:
+    data = workbook([["u", "F"], [0, 1]])
     monkeypatch.setitem(sys.modules, "openpyxl", None)
     with pytest.raises(
         SettingError, match=r"save the table as CSV, or .*slipfront\[excel\]"
     ):
-        table_of(workbook([["u", "F"], [0, 1]]))
+        table_of(data)
 
 
 @pytest.mark.parametrize(
