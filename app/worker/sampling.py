@@ -192,11 +192,15 @@ class Sampler:
 
     def _slips(self, iterate: Iterate) -> Array:
         """Share of all points of surfaces that slip, at shown instants, (n_shown,)."""
+        contacts = self.problem.contacts
         # Springs are next to the surfaces, and neither stick nor slip.
-        status = iterate.status[self.problem.contacts.on_surfaces]
+        status = iterate.status[contacts.on_surfaces]
         if not len(status):
             return np.zeros(len(self.columns))
-        return np.asarray((np.abs(status[:, self.columns]) == 1).mean(axis=0))
+        slips = np.abs(status[:, self.columns]) == 1
+        # One wire of a layer may stand for all of them.
+        copies = contacts.copies[contacts.on_surfaces]
+        return np.asarray(copies @ slips / copies.sum())
 
     def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
         known = {name: partial(extra, self._sampled) for name, extra in EXTRAS.items()}

@@ -143,6 +143,12 @@ class FrictionLaw:
         return np.asarray(np.minimum(rubbed + self.cohesion * size, self.cap * size))
 
     @property
+    def is_by_pressure_alone(self) -> bool:
+        """Check whether the bound is mu times the pressing force, whatever has slipped."""
+        has_cap = not np.isinf(self.cap)
+        return not (self.cohesion or has_cap or self.slip_factor)
+
+    @property
     def largest_factor(self) -> float:
         """Largest factor on the bound at any slip."""
         if self.slip_factor is None:

@@ -68,6 +68,19 @@ def test_the_share_that_slips_is_of_all_points_and_not_of_those_that_are_drawn()
     assert f"Slips <b>{percent(float(slips[2]))}</b>" in line
 
 
+def test_a_wire_that_stands_for_its_layer_counts_as_often_in_the_share() -> None:
+    values = {"construction": "conductor", "bending": "uniform", "load": "ramp"}
+    sizes = {"elements": 20, "instants": 7, "substructures": 1}
+    run, frame = shown("rope", Needs(), curvature=0.02, tension=3e4, **values, **sizes)
+    wires = run.settings.structure().wires
+    slips = np.abs(run.iterate.status.reshape(len(wires), -1, 7)) == 1
+    shares = slips.mean(axis=1)
+    turns = [wire.stands_for / wire.along[-1] for wire in wires]
+    assert np.ptp(shares[:, 3]) > 0.1
+    counted = np.average(shares, axis=0, weights=turns)
+    assert frame.slips == pytest.approx(counted, rel=1e-6)
+
+
 def test_energy_dissipated_is_that_up_to_the_instant_of_its_figures() -> None:
     run, frame = shown("bar", Needs(), instants=9)
     heat = np.cumsum(run.dissipated)

@@ -128,6 +128,24 @@ def test_a_rope_that_runs_has_the_ratio_of_its_angle_both_ways():
     assert creep == pytest.approx(1000.0 * (limit - 1.0) / (5e9 * 1e-4), rel=2e-3)
 
 
+@pytest.mark.parametrize("friction", [0.6, 0.3])
+@pytest.mark.parametrize("pull", [700.0, 1400.0])
+def test_the_friction_that_holds_a_rope_is_eulers_whatever_mu_the_run_has(
+    friction, pull
+):
+    """From the sums of friction and pressure it was 0.38 at a mu of 0.6, not 0.28."""
+    run = finished(
+        settings_of(
+            friction=friction, pull=pull, elements=60, instants=5, tail="pulled"
+        )
+    )
+    assert run.solution.is_certified
+    needed = math.log((1000.0 + pull) / 1000.0) / math.pi
+    assert QUANTITIES["holding_friction"](run) == pytest.approx(needed, rel=1e-6)
+    held = 1000.0 * math.expm1(friction * math.pi)
+    assert QUANTITIES["holding_force"](run) == pytest.approx(held, rel=1e-6)
+
+
 def test_a_drum_carries_nothing_of_ends_that_are_pulled_alike():
     """Rounding of the tensions was a torque of 4e-13 N m."""
     run = finished(settings_of(tail="alike", elements=20, instants=5))

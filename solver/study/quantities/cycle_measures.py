@@ -102,13 +102,17 @@ def sliding_share(run: FinishedRun) -> float:
 
 
 def _free_lengths(run: FinishedRun) -> Array:
-    """Tributary lengths of points of surfaces, (n_points,), m; 0 of clamped ones."""
+    """Tributary lengths of points of surfaces, (n_points,), m; 0 of clamped ones.
+
+    That of a point is the length of all points for which it stands.
+    """
     contacts = run.problem.contacts
     lengths = []
     for law in contacts.laws.values():
         is_free = ~are_clamped(run.problem, law)
         lengths.append(law.by_point(law.weights * is_free))
-    return np.asarray(contacts.of_points(lengths)[contacts.on_surfaces])
+    represented = contacts.copies * contacts.of_points(lengths)
+    return np.asarray(represented[contacts.on_surfaces])
 
 
 @quantity("Shakedown factor on the swing of the load", applies=has_a_limit)
