@@ -144,9 +144,10 @@ class FrictionLaw:
 
     @property
     def is_by_pressure_alone(self) -> bool:
-        """Check whether the bound is mu times the pressing force, whatever has slipped."""
-        has_cap = not np.isinf(self.cap)
-        return not (self.cohesion or has_cap or self.slip_factor)
+        """Check whether the bound is mu N, whatever has slipped."""
+        is_unbounded = np.isinf(self.cap)
+        has_no_bond = self.cohesion == 0.0
+        return bool(is_unbounded and has_no_bond and self.slip_factor is None)
 
     @property
     def largest_factor(self) -> float:

@@ -254,7 +254,7 @@ def test_a_wire_that_stands_for_its_layer_counts_as_often_in_all_shares() -> Non
     largest = int(np.argmax(np.abs(run.force)))
     stuck = [float(np.mean(status[:, largest] == 0)) for status in statuses]
     assert taken("stuck_share", run) == pytest.approx(lengths @ stuck, rel=1e-9)
-    assert not taken("stuck_share", run) == pytest.approx(np.mean(stuck), rel=0.05)
+    assert taken("stuck_share", run) != pytest.approx(np.mean(stuck), rel=0.05)
     # Half a turn of each wire has as many points: a metre of strand has more of those
     # of small wires with a short lay.
     turns = [wire.stands_for / wire.along[-1] for wire in settings.structure().wires]
