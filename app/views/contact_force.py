@@ -138,7 +138,7 @@ class ContactForce(View):
         column: int,
         title: str,
     ) -> None:
-        """Show the largest friction in both directions: of a law, or µ times pressure."""
+        """Show the largest friction in both directions, of the law or by µ alone."""
         strength = fields.bound
         if strength is None:
             strength = interface.strength

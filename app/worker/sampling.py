@@ -297,9 +297,7 @@ class Sampler:
     def _with_bounds(
         self, contact: Mapping[str, InterfaceFields], iterate: Iterate
     ) -> Mapping[str, InterfaceFields]:
-        """Contact fields with the friction bound of the local stage, where slip, a bond
-        or a cap changes it.
-        """
+        """Add the friction bound of the local stage, if slip, a bond or a cap acts."""
         friction_law = self.settings.law
         is_known = not self.problem.opens and friction_law.slip_factor is None
         if friction_law.is_by_pressure_alone or is_known:

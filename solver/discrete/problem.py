@@ -151,6 +151,16 @@ class Problem:
         return len(self.positions)
 
     @cached_property
+    def is_turn(self) -> NDArray[np.bool_]:
+        """Mask of degrees of freedom that are turns of beams, in rad, shape (n_dofs,).
+
+        All others are displacements.
+        """
+        if self.inside is None:
+            return np.zeros(self.n_dofs, dtype=bool)
+        return np.asarray(self.inside.directions[:, 2] != 0.0)
+
+    @cached_property
     def direction(self) -> Array:
         """The paper's search direction k of every row, shape (n_rows,), scaled."""
         k = np.empty(self.n_rows)

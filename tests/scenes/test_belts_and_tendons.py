@@ -146,6 +146,25 @@ def test_the_friction_that_holds_a_rope_is_eulers_whatever_mu_the_run_has(
     assert QUANTITIES["holding_force"](run) == pytest.approx(held, rel=1e-6)
 
 
+def test_errors_of_a_belt_are_the_same_whatever_the_unit_of_length():
+    """Turns of beams, in rad, were errors of the displacement, in m."""
+    errors = []
+    for size in (1.0, 128.0):
+        settings = settings_of(
+            drum_radius=0.1 * size,
+            section=1e-4 * size,
+            young=5e9 / size,
+            elements=20,
+            instants=9,
+            start="zero",
+        )
+        problem = discretise(settings)
+        distance = distance_to(reference_of(problem), problem)
+        search = iterations(problem, method_of(settings))
+        errors.append([distance.of_displacement(next(search)) for _ in range(6)])
+    assert errors[0] == pytest.approx(errors[1], rel=1e-6)
+
+
 def test_a_drum_carries_nothing_of_ends_that_are_pulled_alike():
     """Rounding of the tensions was a torque of 4e-13 N m."""
     run = finished(settings_of(tail="alike", elements=20, instants=5))
