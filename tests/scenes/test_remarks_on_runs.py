@@ -180,7 +180,7 @@ def test_the_strain_of_a_bar_is_force_over_stiffness():
 def test_a_bar_is_strained_by_ground_that_settles_only_if_it_sticks(
     changes, is_strained
 ):
-    """One that stuck was said to have none, one that slipped the strain of the ground."""
+    """One that stuck was said to have none, one that slipped that of the ground."""
     free = {"peak": 0.0, "left_end": "free", "right_end": "free", "settlement": 0.1}
     sizes = {"elements": 10, "instants": 5, "substructures": 1}
     settings = CATALOGUE["bar"].checked({**free, **sizes, **changes})
