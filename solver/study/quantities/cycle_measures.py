@@ -12,7 +12,12 @@ from solver.discrete.rope.rope import Rope
 from solver.discrete.rope.wire_forces import stress_ranges
 from solver.laws import OPEN, FrictionLaw
 from solver.reference.assembly import NoReferenceError
-from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
+from solver.reference.shakedown import (
+    driven_limit,
+    largest_swing,
+    shakedown_limit,
+    slip_space,
+)
 from solver.settings.scene import Settings
 from solver.study.quantities.body_measures import is_rope
 from solver.study.quantities.contact_measures import are_clamped
@@ -122,10 +127,13 @@ def shakedown_factor(run: FinishedRun) -> float:
     With that factor slip can still cease (MATHEMATICS.md, 15). NaN where no limit
     is known, or where not even the mean load keeps all contacts closed.
     """
+    problem = run.problem
+    last = _last(run)
     try:
-        if run.problem.opens:
-            return largest_swing(slip_space(run.problem), _last(run))[0]
-        return shakedown_limit(run.problem, _last(run))
+        if problem.opens:
+            swing, _ = largest_swing(slip_space(problem), last)
+            return min(swing, driven_limit(problem, last))
+        return shakedown_limit(problem, last)
     except NoReferenceError:
         return math.nan
 
