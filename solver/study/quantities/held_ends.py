@@ -38,7 +38,10 @@ def _at_held_sides(stack: Stack, lengths: Array) -> Array:
     """Lengths of sides that are held across a joint of bodies that lie on each other.
 
     From the tributary lengths of the points of the joint; shape (n_points,) both, m.
+    Over a gap ends need not touch where the points beside them do.
     """
+    if stack.support is not None and np.any(stack.support.gap):
+        return np.zeros_like(lengths)
     size = stack.length / stack.elements[0]
     held = np.zeros_like(lengths)
     for point, side in ((0, "left"), (-1, "right")):
