@@ -241,6 +241,28 @@ def test_energy_stiffness_and_slip_are_those_of_the_closed_form() -> None:
     assert work == pytest.approx(2.0 * exact.layers[0].strength * slip, rel=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("law", "is_told"),
+    [
+        ({}, True),
+        ({"friction_law": "general", "cohesion": 1e3}, True),
+        ({"friction_law": "compliant", "contact_stiffness": 1.0}, False),
+        ({"friction_law": "general", "tangential_stiffness": 1e8}, False),
+    ],
+)
+def test_the_stiffness_while_nothing_slips_is_told_of_rigid_contacts_alone(
+    law: dict[str, Any], is_told: bool
+) -> None:
+    """A strand whose wires gave way was said to be eight times as stiff as it was."""
+    settings = settings_of(curvature=1e-5, load="ramp", layers=2, instants=3, **law)
+    run = finished_run(settings, errors=False)
+    assert taken("dissipation", run) == 0.0
+    stiffness = taken("stuck_bending", run)
+    assert np.isfinite(stiffness) == is_told
+    if is_told:
+        assert taken("bending_stiffness", run) == pytest.approx(stiffness, rel=0.01)
+
+
 def test_a_wire_that_stands_for_its_layer_counts_as_often_in_all_shares() -> None:
     """A metre of strand has 1 / cos(lay) of each wire; each layer was one wire."""
     settings = settings_of(

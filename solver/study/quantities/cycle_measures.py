@@ -153,9 +153,17 @@ def _last(run: FinishedRun) -> slice:
     return slice(0, None)
 
 
-@quantity("Bending stiffness while nothing slips", "N·m^2", applies=is_rope)
+def _sticks_rigidly(settings: Settings) -> bool:
+    """Check whether the wires of a rope do not give way before they slip."""
+    return is_rope(settings) and math.isinf(settings.law.stiffness)
+
+
+@quantity("Bending stiffness while nothing slips", "N·m^2", applies=_sticks_rigidly)
 def stuck_bending(run: FinishedRun) -> float:
-    """Bending stiffness with all wires sticking, N m^2."""
+    """Bending stiffness with all wires sticking, N m^2.
+
+    Of a strand whose contacts give way before they slip it is smaller, and not known.
+    """
     return _rope(run.settings).section.stuck_bending
 
 
