@@ -238,6 +238,15 @@ class Problem:
         return [form.glued for form in forms if form.glued is not None]
 
     @cached_property
+    def turns_at_cuts(self) -> Indices:
+        """Rows of turns of beams on both sides of glued cuts, (n,)."""
+        rows = [np.zeros(0, dtype=np.intp)]
+        for cut in self.cuts:
+            rows += [cut.first, cut.second]
+        together = np.concatenate(rows)
+        return np.asarray(together[self.is_turn[self.row_dofs[together]]])
+
+    @cached_property
     def unknown_rows(self) -> tuple[slice | Indices, list[NDArray[np.bool_]]]:
         """Rows whose forces are unknown before a solution, and masks of their kinds.
 

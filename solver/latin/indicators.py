@@ -234,8 +234,16 @@ def _gap_of_bonds(
     """Sum of relative gaps of displacements and of forces at all other interfaces.
 
     `displacement` and `force` have shape (n_rows, n_instants), scaled; gaps up to
-    `noise` are rounding.
+    `noise` are rounding. Turns of beams where these are cut count as what they move at
+    the distance of a scaled length, so that the unit of length does not matter.
     """
+    turns = problem.turns_at_cuts
+    if turns.size:
+        length = problem.scales.displacement
+        displacement = displacement.copy(order="K")
+        displacement[turns] *= length
+        force = force.copy(order="K")
+        force[turns] /= length
     k = problem.direction
     gaps_of_laws = [law.gaps(displacement, force, noise, k) for law in problem.laws]
     apart = sum(gaps.displacement for gaps in gaps_of_laws)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -147,8 +148,9 @@ def test_the_friction_that_holds_a_rope_is_eulers_whatever_mu_the_run_has(
 
 
 def test_errors_of_a_belt_are_the_same_whatever_the_unit_of_length():
-    """Turns of beams, in rad, were errors of the displacement, in m."""
+    """Turns of beams, in rad, were displacements, in m, of errors and indicators."""
     errors = []
+    indicators = []
     for size in (1.0, 128.0):
         settings = settings_of(
             drum_radius=0.1 * size,
@@ -160,9 +162,12 @@ def test_errors_of_a_belt_are_the_same_whatever_the_unit_of_length():
         )
         problem = discretise(settings)
         distance = distance_to(reference_of(problem), problem)
-        search = iterations(problem, method_of(settings))
-        errors.append([distance.of_displacement(next(search)) for _ in range(6)])
+        search = islice(iterations(problem, method_of(settings)), 6)
+        iterates = list(search)
+        errors.append([distance.of_displacement(iterate) for iterate in iterates])
+        indicators.append([iterate.violation for iterate in iterates])
     assert errors[0] == pytest.approx(errors[1], rel=1e-6)
+    assert indicators[0] == pytest.approx(indicators[1], rel=1e-6)
 
 
 def test_a_drum_carries_nothing_of_ends_that_are_pulled_alike():
