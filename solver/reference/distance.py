@@ -69,8 +69,12 @@ class Distance:
         self._dofs: Indices = dofs[~problem.is_turn[dofs]]
         self._displacement = reference.displacement[self._dofs] * self._held
         self._force = reference.contact_force * self._determinate
-        self._displacement_size = self._norm(self._displacement) or 1.0
-        self._set_sizes(rules_of(problem), self._norm(load), problem.scales.force)
+        scales = problem.scales
+        load_size = self._norm(load)
+        # As far as the load would stretch the structure.
+        stretched = load_size * scales.displacement / scales.force
+        self._displacement_size = self._norm(self._displacement) or stretched or 1.0
+        self._set_sizes(rules_of(problem), load_size, scales.force)
 
     def _set_sizes(self, rules: Rules, load_size: float, unit: float) -> None:
         """Set the norms of all contact forces, and of pressure and friction apart.
