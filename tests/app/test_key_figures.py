@@ -83,7 +83,7 @@ def test_a_wire_that_stands_for_its_layer_counts_as_often_in_the_share() -> None
 
 
 def test_the_stress_of_a_bent_wire_is_drawn_where_it_is() -> None:
-    """It was drawn half an element too near to the clamp, that at the clamp nowhere."""
+    """Stress was drawn half an element too near to the clamp, that there nowhere."""
     needs = Needs(extras=frozenset({"stress"}))
     sizes = {"elements": 6, "instants": 5, "substructures": 1, "layers": 1}
     run, frame = shown("rope", needs, length=0.15, tension=4e4, **sizes)

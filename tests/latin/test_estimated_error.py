@@ -328,7 +328,7 @@ def test_an_indicator_for_another_k_is_no_measure_of_a_stall() -> None:
 
 
 def test_the_error_of_a_bar_that_does_not_move_is_a_share_in_any_unit() -> None:
-    """It was in metres, and called 0.001 % of a bar of 1 m at first."""
+    """Metres were called a share: 0.001 % of a bar of 1 m at first."""
     errors = []
     for size in (1.0, 64.0):
         settings = CATALOGUE["bar"].checked(

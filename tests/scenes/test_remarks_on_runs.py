@@ -180,17 +180,17 @@ def test_the_strain_of_a_bar_is_force_over_stiffness():
 def test_a_bar_is_strained_by_ground_that_settles_only_if_it_sticks(
     changes, is_strained
 ):
-    """One that stuck was said to have none, one that slipped that of the ground."""
+    """Bars that stuck were said to have no strain, those that slipped the ground's."""
     free = {"peak": 0.0, "left_end": "free", "right_end": "free", "settlement": 0.1}
     sizes = {"elements": 10, "instants": 5, "substructures": 1}
-    settings = CATALOGUE["bar"].checked({**free, **sizes, **changes})
+    settings = CATALOGUE["bar"].checked(free | sizes | changes)
     iterate = finished_run(settings, errors=False).iterate
     remarks = " ".join(remarks_on(settings, iterate))
     assert ("strains or slopes reach 0.1" in remarks) is is_strained
 
 
 def test_a_rope_that_slides_freely_may_be_as_far_away_as_its_points():
-    """It was the angle that the rope turns by: ten times as much on a drum of 0.1 m."""
+    """The angle it turns by was told: ten times as much on a drum of 0.1 m."""
     free = {"friction": 0.0, "pull": 0.0, "elements": 20, "instants": 5}
     settings = CATALOGUE["belt"].checked(free)
     iterate = finished_run(settings, errors=False).iterate
