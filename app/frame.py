@@ -62,6 +62,9 @@ class InterfaceFields:
     slip: Floats | None = None
     """Tangential displacement over the body below, same shape, m; None where nobody
     takes it away."""
+    bound: Floats | None = None
+    """Largest friction, same shape and unit as friction; None where the pressure, or
+    the interface, tells it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,7 +245,7 @@ class Frame:
         arrays = [moved.nodes, moved.points, moved.status, self.loop]
         for fields in self.contact.values():
             arrays += [fields.friction, fields.status]
-            for more in (fields.pressure, fields.slip):
+            for more in (fields.pressure, fields.slip, fields.bound):
                 if more is not None:
                     arrays.append(more)
         return sum(array.nbytes for array in arrays) + _size(self.extras)

@@ -25,6 +25,9 @@ ROOM = 1.15
 FARTHEST = 2.0
 """Limits of the axis over the largest known force, and largest force of an iterate that
 is in sight over it."""
+RUBBED = "±µp"
+HELD = "most friction"
+"""Names of the largest friction: of µ times the pressure, and of other laws."""
 
 
 class ContactForce(View):
@@ -57,7 +60,7 @@ class ContactForce(View):
             pressure="pressure",
             reference="reference",
             error="error",
-            bound="±µp",
+            bound=RUBBED,
             exact="closed form",
             ghost="ghost",
             beside="beside",
@@ -87,7 +90,10 @@ class ContactForce(View):
         exact = _closed_forms(run, name, has_pressure=fields.pressure is not None)
         self._scale(frame, name, fields, [curve.up for curve in exact])
         self._show_forces(interface, fields, run.reference.get(name), column)
-        self._show_strength(interface, fields, column)
+        title = HELD
+        if run.settings.law.is_by_pressure_alone:
+            title = RUBBED
+        self._show_strength(interface, fields, column, title)
         self.fill("cuts", x=self.x(interface.cuts))
         selected = []
         if selection.position is not None:
@@ -126,16 +132,23 @@ class ContactForce(View):
         self.show("error", reference is not None)
 
     def _show_strength(
-        self, interface: FrictionInterface, fields: InterfaceFields, column: int
+        self,
+        interface: FrictionInterface,
+        fields: InterfaceFields,
+        column: int,
+        title: str,
     ) -> None:
-        """Show the friction strength in both directions, given or µ times pressure."""
-        strength = interface.strength
+        """Show the largest friction in both directions, of the law or by µ alone."""
+        strength = fields.bound
+        if strength is None:
+            strength = interface.strength
         if strength is None:
             strength = interface.coefficient * np.maximum(fields.pressure, 0.0)
         # A strength that does not change has a single column.
         strength = strength[:, min(column, strength.shape[1] - 1)]
         positions = interface.positions
-        self.draw("bound", *joined([(positions, strength), (positions, -strength)]))
+        curves = [(positions, strength), (positions, -strength)]
+        self.draw("bound", *joined(curves), title)
 
     def _show_ghost(self, ghost: Frame | None, selection: Selection) -> None:
         if ghost is None:

@@ -70,9 +70,7 @@ class PieceJoints:
         self.left_out = len(keys) - len(kept)
         names = [*problem.contacts, ""]
         self.names = [names[number] for number in keys[kept, 0]]
-        turns = np.zeros(problem.n_rows, dtype=bool)
-        if problem.inside is not None:
-            turns = problem.inside.directions[problem.row_dofs, 2] != 0.0
+        turns = problem.is_turn[problem.row_dofs]
         self._gather(pairs, of_pairs, kept, turns)
         self.owners = owners[self._rows[np.unique(self._sides, return_index=True)[1]]]
         self._directions = np.tile([1.0, 0.0], (len(self._rows), 1))

@@ -185,6 +185,8 @@ class _Apart:
         )
         pairs = pairs_of(problem)
         is_cut = (pairs.numbers == NONE) & np.isin(pairs.above, rows)
+        # A gap is a length: beams that meet at an angle leave none.
+        is_cut &= ~problem.is_turn[problem.row_dofs[pairs.above]]
         self._cuts = pairs.above[is_cut], pairs.below[is_cut]
 
     def of(self, iterate: Iterate) -> Pieces:

@@ -162,8 +162,11 @@ class Sampler:
             run=self.run,
             iteration=iterate.iterations,
             is_answer=is_beside,
-            contact=self._contact(
-                iterate, self._names(needs), with_slip=TABLE in needs.extras
+            contact=self._with_bounds(
+                self._contact(
+                    iterate, self._names(needs), with_slip=TABLE in needs.extras
+                ),
+                iterate,
             ),
             deformed=self.drawn.deformed(iterate),
             loop=floats(np.stack([run.displacement, run.force])[:, self.columns]),
@@ -192,11 +195,15 @@ class Sampler:
 
     def _slips(self, iterate: Iterate) -> Array:
         """Share of all points of surfaces that slip, at shown instants, (n_shown,)."""
+        contacts = self.problem.contacts
         # Springs are next to the surfaces, and neither stick nor slip.
-        status = iterate.status[self.problem.contacts.on_surfaces]
+        status = iterate.status[contacts.on_surfaces]
         if not len(status):
             return np.zeros(len(self.columns))
-        return np.asarray((np.abs(status[:, self.columns]) == 1).mean(axis=0))
+        slips = np.abs(status[:, self.columns]) == 1
+        # One wire of a layer may stand for all of them.
+        copies = contacts.copies[contacts.on_surfaces]
+        return np.asarray(copies @ slips / copies.sum())
 
     def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
         known = {name: partial(extra, self._sampled) for name, extra in EXTRAS.items()}
@@ -286,6 +293,28 @@ class Sampler:
                 slip,
             )
         return contact
+
+    def _with_bounds(
+        self, contact: Mapping[str, InterfaceFields], iterate: Iterate
+    ) -> Mapping[str, InterfaceFields]:
+        """Add the friction bound of the local stage, if slip, a bond or a cap acts."""
+        friction_law = self.settings.law
+        is_known = not self.problem.opens and friction_law.slip_factor is None
+        if friction_law.is_by_pressure_alone or is_known:
+            return contact
+        contacts = self.problem.contacts
+        force = iterate.boundary_local_force
+        bounded = dict(contact)
+        for law, numbers, _, _ in contacts.stacks:
+            violation = law.violation(iterate.local_displacement, force, 0.0)
+            bound = law.by_point(violation.bound)[:, self.columns]
+            for number, (points, _) in zip(numbers, law.ranges, strict=True):
+                name = contacts.names[number]
+                if name in contact:
+                    shown = bound[points][self.rows[name]] / self._lengths[name]
+                    largest = floats(shown * self.problem.scales.force)
+                    bounded[name] = replace(contact[name], bound=largest)
+        return bounded
 
     def _loop(self, shown: LoopFields) -> Floats:
         """Displacement and force of the loop at shown instants, (2, n_shown), SI."""

@@ -157,20 +157,20 @@ class DrawnRope:
         """Make the mesh of strips; set wires and points of cells, and bent nodes."""
         mesh, middles, rows = strips_of(self._wires)
         nearest = self._nearest(mesh["parts"], middles)
-        self._quad_wires, _, self._quad_points, _ = nearest
+        self._quad_wires, _, self._quad_elements, _ = nearest
         self._nodes_moved = self._moved(rows, mesh["nodes"][:, 1])
         return mesh
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
         """Mean stress over the section of every wire, (n_cells, n_instants), Pa."""
         stress = wire_stresses(self._rope, iterate.displacement, self._columns)
-        element = np.minimum(self._quad_points, stress.shape[1] - 1)
-        return "wire stress", "Pa", floats(stress[self._quad_wires, element])
+        shown = stress[self._quad_wires, self._quad_elements]
+        return "wire stress", "Pa", floats(shown)
 
     def _nearest(
         self, numbers: Array, positions: Array
     ) -> tuple[Indices, Indices, Indices, Bytes]:
-        """Wire, contact point, node and sign of slip at positions on outer wires.
+        """Wire, contact point, element and sign of slip at positions on outer wires.
 
         Numbers of wires and positions along the strand, m, have shape (n,), as all
         results.
@@ -187,11 +187,12 @@ class DrawnRope:
         return wires, *self._points_at(wires, share), sides
 
     def _points_at(self, wires: Indices, share: Array) -> tuple[Indices, Indices]:
-        """Nearest contact points and nodes, (n,), at shares of the length, (n,)."""
-        elements = self._rope.elements
-        nearest = np.round(share * elements).astype(np.intp)
-        node = np.clip(nearest, 1, max(elements - 1, 1))
-        return wires * (elements - 1) + node - 1, node
+        """Nearest contact points, and elements, (n,), at shares of the length, (n,)."""
+        count = self._rope.elements
+        nearest = np.round(share * count).astype(np.intp)
+        node = np.clip(nearest, 1, max(count - 1, 1))
+        element = np.clip((share * count).astype(np.intp), 0, count - 1)
+        return wires * (count - 1) + node - 1, element
 
     def _lines(self) -> tuple[Indices, Array, Indices, Indices, Bytes]:
         """Contact points along the wires in front: steps, heights with NaN, and wires.

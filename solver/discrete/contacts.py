@@ -166,6 +166,17 @@ class Contacts(Mapping[str, Contact]):
             is_surface[stacked.points] = not stacked.law.is_spring
         return is_surface
 
+    @cached_property
+    def copies(self) -> Array:
+        """Number of points for which each point stands, shape (n_points,).
+
+        It is 1 but where a wire represents its layer.
+        """
+        copies = np.ones(self.n_points)
+        for stacked in self.stacks:
+            copies[stacked.points] = stacked.law.copies
+        return copies
+
     def sum_of_rows(self, n_rows: int) -> sparse.csr_array:
         """Sum over the rows of each point and component, shape (n_forces, n_rows)."""
         forces = [np.zeros(0, dtype=np.intp)]

@@ -151,6 +151,16 @@ class Problem:
         return len(self.positions)
 
     @cached_property
+    def is_turn(self) -> NDArray[np.bool_]:
+        """Mask of degrees of freedom that are turns of beams, in rad, shape (n_dofs,).
+
+        All others are displacements.
+        """
+        if self.inside is None:
+            return np.zeros(self.n_dofs, dtype=bool)
+        return np.asarray(self.inside.directions[:, 2] != 0.0)
+
+    @cached_property
     def direction(self) -> Array:
         """The paper's search direction k of every row, shape (n_rows,), scaled."""
         k = np.empty(self.n_rows)
@@ -226,6 +236,15 @@ class Problem:
         """Rows of both sides of the glued cuts, interface by interface."""
         forms = self.incremental_forms.values()
         return [form.glued for form in forms if form.glued is not None]
+
+    @cached_property
+    def turns_at_cuts(self) -> Indices:
+        """Rows of turns of beams on both sides of glued cuts, (n,)."""
+        rows = [np.zeros(0, dtype=np.intp)]
+        for cut in self.cuts:
+            rows += [cut.first, cut.second]
+        together = np.concatenate(rows)
+        return np.asarray(together[self.is_turn[self.row_dofs[together]]])
 
     @cached_property
     def unknown_rows(self) -> tuple[slice | Indices, list[NDArray[np.bool_]]]:

@@ -148,6 +148,7 @@ def violation_of(problem: Problem, displacement: Array, force: Array) -> float:
 
     `displacement` and `force` have shape (n_rows, n_instants), scaled.
     """
+    displacement, force = _as_lengths(problem, displacement, force)
     noise = _rounding(displacement, force)
     groups = _known_groups(problem)
     violations = [group.law.violation(displacement, force, noise) for group in groups]
@@ -168,6 +169,25 @@ def violation_of(problem: Problem, displacement: Array, force: Array) -> float:
     total = ratio(len(problem.contacts) * worst, energy)
     total += _gap_of_bonds(problem, displacement, force, noise)
     return total / _share_of_friction(problem, force)
+
+
+def _as_lengths(
+    problem: Problem, displacement: Array, force: Array
+) -> tuple[Array, Array]:
+    """W and F, with turns of beams at their cuts as lengths, and moments as forces.
+
+    A turn counts as what it moves at the distance of a scaled length, so that the unit
+    of length does not matter. All have shape (n_rows, n_instants), scaled.
+    """
+    turns = problem.turns_at_cuts
+    if not turns.size:
+        return displacement, force
+    length = problem.scales.displacement
+    moved = displacement.copy(order="K")
+    moved[turns] *= length
+    pushed = force.copy(order="K")
+    pushed[turns] /= length
+    return moved, pushed
 
 
 def _known_groups(problem: Problem) -> list[ContactGroup]:

@@ -143,6 +143,13 @@ class FrictionLaw:
         return np.asarray(np.minimum(rubbed + self.cohesion * size, self.cap * size))
 
     @property
+    def is_by_pressure_alone(self) -> bool:
+        """Check whether the bound is mu N, whatever has slipped."""
+        is_unbounded = np.isinf(self.cap)
+        has_no_bond = self.cohesion == 0.0
+        return bool(is_unbounded and has_no_bond and self.slip_factor is None)
+
+    @property
     def largest_factor(self) -> float:
         """Largest factor on the bound at any slip."""
         if self.slip_factor is None:

@@ -48,10 +48,11 @@ class Fields(Protocol):
 class Distance:
     """Relative L2 distance over space and time to a reference of the same problem.
 
-    Displacements are compared at interfaces. Where the reference field vanishes, the
-    distance is relative to the load instead, and absolute if that vanishes, too;
-    contact forces vanish also if they are rounding beside the largest friction force
-    and beside the load. Both fields are compared where they are determinate.
+    Displacements are compared at interfaces, without the turns of beams. Where the
+    reference field vanishes, the distance is relative to the load instead, and absolute
+    if that vanishes, too; contact forces vanish also if they are rounding beside the
+    largest friction force and beside the load. Both fields are compared where they are
+    determinate.
 
     Attributes
     ----------
@@ -64,11 +65,16 @@ class Distance:
         self._weights = problem.time_weights
         self._determinate = determinate_forces(problem)
         self._held = held_instants(problem, reference.contact_force)
-        self._dofs: Indices = np.unique(problem.row_dofs)
+        dofs = np.unique(problem.row_dofs)
+        self._dofs: Indices = dofs[~problem.is_turn[dofs]]
         self._displacement = reference.displacement[self._dofs] * self._held
         self._force = reference.contact_force * self._determinate
-        self._displacement_size = self._norm(self._displacement) or 1.0
-        self._set_sizes(rules_of(problem), self._norm(load), problem.scales.force)
+        scales = problem.scales
+        load_size = self._norm(load)
+        # As far as the load would stretch the structure.
+        stretched = load_size * scales.displacement / scales.force
+        self._displacement_size = self._norm(self._displacement) or stretched or 1.0
+        self._set_sizes(rules_of(problem), load_size, scales.force)
 
     def _set_sizes(self, rules: Rules, load_size: float, unit: float) -> None:
         """Set the norms of all contact forces, and of pressure and friction apart.

@@ -30,10 +30,11 @@ import numpy as np
 import scipy
 from scipy import sparse
 
-from solver.arrays import Array
+from solver.arrays import Array, largest_size
 from solver.discrete.problem import Problem
-from solver.reference.assembly import NoReferenceError
+from solver.reference.assembly import NoReferenceError, jumps
 from solver.reference.condensation import Condensation
+from solver.reference.rules import rules_of
 
 MOST_KNOWN = 1000
 """Largest number of points of known bound whose matrices, which are full, take no more
@@ -49,6 +50,34 @@ seconds: 423 of ten layers 3.6, 769 of a block 26, 893 of twenty layers 145
 (measured)."""
 UNBOUNDED = 3
 """Status of `linprog` where the factor may grow without limit."""
+
+
+def driven_limit(problem: Problem, cycle: slice) -> float:
+    """Largest factor on all motions in a cycle at which what they drive does not slip.
+
+    It is that of points whose jumps prescribed displacements alone make, as at an end
+    that is moved over its support: zero if such a point moves with nothing that gives
+    way, and infinite without such points.
+    """
+    rules = rules_of(problem)
+    fixed, prescribed = problem.prescribed
+    all_jumps = jumps(problem)
+    free = np.ones(problem.n_dofs)
+    free[fixed] = 0.0
+    is_driven = abs(all_jumps) @ free == 0.0
+    driven = np.flatnonzero(is_driven & ~rules.normal & ~rules.is_frictionless)
+    jump = all_jumps[driven][:, fixed] @ prescribed[:, cycle]
+    is_moved = np.ptp(jump, axis=1) > FELT * largest_size(prescribed)
+    driven = driven[is_moved]
+    if not driven.size:
+        return np.inf
+    compliance = rules.compliance[driven, None]
+    if not compliance.all():
+        return 0.0
+    shape = (len(driven), problem.n_instants)
+    bound = np.broadcast_to(rules.bound[driven], shape)[:, cycle]
+    scale = largest_size(bound) or 1.0
+    return _limit_of_points(jump[is_moved] / compliance / scale, bound / scale)
 
 
 def shakedown_limit(problem: Problem, cycle: slice) -> float:
@@ -88,8 +117,11 @@ def shakedown_limit(problem: Problem, cycle: slice) -> float:
     elastic = elastic / scale
     bound = bound / scale
     if rings.shape[1]:
-        return _limit_in_rings(elastic, bound, rings[rubs])
-    return _limit_of_points(elastic, bound)
+        limit = _limit_in_rings(elastic, bound, rings[rubs])
+    else:
+        limit = _limit_of_points(elastic, bound)
+    # Points that are driven have no unknown jump.
+    return min(limit, driven_limit(problem, cycle))
 
 
 def _forces_of_slips(

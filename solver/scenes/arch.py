@@ -304,6 +304,9 @@ class ArchSettings(PlaneSettings):
         least = self._least_thrust
         if least is None or self.has_live or self.abutment != "apart":
             return
+        # Statics of rigid voussoirs knows friction by mu N alone.
+        if not self.law.is_by_pressure_alone:
+            return
         moved = self.path("abutment_load")
         strain = self.unit_weight * self.length / self.young
         is_apart = (self._hold == 1.0) & (moved >= HINGED * strain * self.length)

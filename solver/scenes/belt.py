@@ -132,8 +132,8 @@ class BeltSettings(PlaneSettings):
         "pulled",
         ["pulled", "moved", "jacked"],
         "What drives the last end. pulled: a force. moved: a displacement. jacked: the "
-        "displacement that the force of a jack makes, from which its wedges then draw "
-        "in.",
+        "displacement that the force of a jack makes under Coulomb's friction, from "
+        "which its wedges then draw in.",
         title="The pulled end is",
     )
     pull = LOAD.quantity(

@@ -72,9 +72,9 @@ def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
     a contact that grows too fast for the instants, and bodies that may stand elsewhere.
     """
     remarks = list(settings.left_out())
-    beyond = beyond_small_strain(
-        settings.structure(), iterate.problem, iterate.displacement
-    )
+    # What a support that moves takes along is strained as it is.
+    displacement = iterate.problem.absolute(iterate.displacement)
+    beyond = beyond_small_strain(settings.structure(), iterate.problem, displacement)
     if beyond is not None:
         remarks.append(beyond)
     standing = _standing_on_an_end(settings, iterate)
@@ -100,10 +100,10 @@ def _one_of_several(answer: Answer) -> str:
     others = other_positions(problem, answer.displacement, answer.contact_force)
     if not others:
         return ""
-    apart = [
-        float(np.abs(other - answer.displacement[:, instant]).max())
-        for instant, other in others.items()
-    ]
+    apart = []
+    for instant, other in others.items():
+        moved = other - answer.displacement[:, instant]
+        apart.append(float(np.abs(moved[~problem.is_turn]).max()))
     first = problem.instants[min(others)]
     return (
         f"This is one of several solutions: at {len(others)} of {problem.n_instants} "
@@ -168,7 +168,7 @@ def largest_strain(
     A translation has none. Along rods it is the strain of an element; in the plane the
     mean derivative over an element, rotation included; of a band on a guide its strain
     and its slope to the guide; of wires the axial strain plus the strain of bending.
-    `displacement` is that of the problem's degrees of freedom,
+    `displacement` is that of the problem's degrees of freedom, absolute,
     (n_dofs, n_instants), m.
     """
     if isinstance(structure, Rope):

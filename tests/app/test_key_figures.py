@@ -13,6 +13,7 @@ from app.status import figures_line
 from app.units import percent
 from app.worker.geometry import MOST_POINTS
 from app.worker.sampling import MOST_INSTANTS, Sampler
+from solver.discrete.rope.wire_forces import wire_stresses
 from solver.files.amounts import number
 from solver.scenes import CATALOGUE
 from solver.study.quantities.finished import FinishedRun, figures_of
@@ -66,6 +67,34 @@ def test_the_share_that_slips_is_of_all_points_and_not_of_those_that_are_drawn()
     assert frame.slips == pytest.approx(slips, rel=1e-6)
     line = figures_line(frame, Selection(phase=0.2))
     assert f"Slips <b>{percent(float(slips[2]))}</b>" in line
+
+
+def test_a_wire_that_stands_for_its_layer_counts_as_often_in_the_share() -> None:
+    values = {"construction": "conductor", "bending": "uniform", "load": "ramp"}
+    sizes = {"elements": 20, "instants": 7, "substructures": 1}
+    run, frame = shown("rope", Needs(), curvature=0.02, tension=3e4, **values, **sizes)
+    wires = run.settings.structure().wires
+    slips = np.abs(run.iterate.status.reshape(len(wires), -1, 7)) == 1
+    shares = slips.mean(axis=1)
+    turns = [wire.stands_for / wire.along[-1] for wire in wires]
+    assert np.ptp(shares[:, 3]) > 0.1
+    counted = np.average(shares, axis=0, weights=turns)
+    assert frame.slips == pytest.approx(counted, rel=1e-6)
+
+
+def test_the_stress_of_a_bent_wire_is_drawn_where_it_is() -> None:
+    """Stress was drawn half an element too near to the clamp, that there nowhere."""
+    needs = Needs(extras=frozenset({"stress"}))
+    sizes = {"elements": 6, "instants": 5, "substructures": 1, "layers": 1}
+    run, frame = shown("rope", needs, length=0.15, tension=4e4, **sizes)
+    rope = run.settings.structure()
+    stress = wire_stresses(rope, run.iterate.displacement, slice(None))
+    geometry = frame.run.geometry
+    middles = geometry.nodes[geometry.cells, 0].mean(axis=1)
+    elements = np.floor(middles / (0.15 / 6)).astype(int)
+    assert set(elements) == set(range(6))
+    _, _, drawn = frame.extras["stress"]
+    assert drawn == pytest.approx(stress[geometry.parts, elements], rel=1e-5)
 
 
 def test_energy_dissipated_is_that_up_to_the_instant_of_its_figures() -> None:

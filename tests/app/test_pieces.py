@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from bokeh.events import Tap
 
-from app.frame import Frame, Selection
+from app.frame import LINEAR, Frame, Selection
 from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Start
 from app.state import PageState
@@ -179,6 +179,23 @@ def test_micro_forces_have_no_resultant_and_no_moment(scene: str) -> None:
         )
         assert np.abs(lengths @ values).max() < 1e-5 * largest
         assert np.abs((along * lengths) @ values).max() < 1e-5 * largest * np.ptp(along)
+
+
+def test_gaps_between_pieces_of_a_belt_are_lengths() -> None:
+    """The angle between two beams, in rad, was called 0.29 mm, where 8 µm gaped."""
+    settings = CATALOGUE["belt"].checked({"elements": 20, "instants": 9, **PLAIN})
+    *_, (iterate, pieces) = taken_apart(settings, 3)
+    problem = iterate.problem
+    moved = iterate.boundary_displacement * problem.scales.displacement
+    inside = problem.inside
+    assert inside is not None
+    largest = 0.0
+    for cut in problem.cuts:
+        is_length = inside.directions[problem.row_dofs[cut.first], 2] == 0.0
+        jumps = np.abs(moved[cut.first] - moved[cut.second])
+        assert jumps.max() > 5.0 * jumps[is_length].max()
+        largest = max(largest, float(jumps[is_length].max()))
+    assert pieces.stages[LINEAR].gap.max() == pytest.approx(largest, rel=1e-6)
 
 
 def test_micro_forces_of_a_belt_that_is_wound_three_times_are_finite() -> None:

@@ -27,6 +27,8 @@ from solver.latin import (
 from solver.latin.end import status, stop
 from solver.latin.end.estimate import ErrorEstimate
 from solver.latin.end.stop import StallCheck
+from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.scene import Settings
@@ -323,3 +325,32 @@ def test_an_indicator_for_another_k_is_no_measure_of_a_stall() -> None:
             ends = number
             break
     assert ends == 2 * 140
+
+
+def test_the_error_of_a_bar_that_does_not_move_is_a_share_in_any_unit() -> None:
+    """Metres were called a share: 0.001 % of a bar of 1 m at first."""
+    errors = []
+    for size in (1.0, 64.0):
+        settings = CATALOGUE["bar"].checked(
+            {
+                "temperature": 50.0,
+                "peak": 0.0,
+                "right_end": "held",
+                "length": size,
+                "section": 3.14e-6 * size**2,
+                "pressure": 5e3 * size,
+                "elements": 10,
+                "substructures": 5,
+                "instants": 5,
+                "start": "zero",
+                "method": "paper",
+            }
+        )
+        problem = discretise(settings)
+        reference = reference_of(problem)
+        assert not reference.displacement.any()
+        distance = distance_to(reference, problem)
+        search = islice(iterations(problem, method_of(settings)), 5)
+        errors.append([distance.of_displacement(iterate) for iterate in search])
+    assert errors[0] == pytest.approx(errors[1], rel=1e-9)
+    assert max(errors[0]) > 0.01

@@ -10,12 +10,14 @@ import pytest
 from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.scenes import CATALOGUE, discretise
+from solver.study.quantities import reading
 from solver.study.quantities.cycles import cycle_ends, cycles_of
 from solver.study.scene_run import finished_run
 
 BOUND = 1500.0
 LENGTH = 1.0
 SMALL = {"elements": 20, "instants": 161, "substructures": 2, "load": "cycles"}
+MOVED = {"right_end": "held", "right_load": "cycles"}
 GIVES_WAY = {"friction_law": "compliant", "contact_stiffness": 100.0}
 
 
@@ -42,7 +44,9 @@ CASES = [
     ("strand", {"peak": 300.0, **GIVES_WAY}),
     ("strand", {"peak": 200.0, "pressure_load": "shaken", **GIVES_WAY}),
     ("strand", {"peak": 300.0, "grip": "displacement", **GIVES_WAY}),
+    ("bar", {"right_displacement": 1e-3, **(MOVED | GIVES_WAY)}),
 ]
+"""The end of the last one is driven: it slipped from half of the limit on."""
 
 
 @pytest.mark.parametrize(("scene", "changes"), CASES)
@@ -50,10 +54,44 @@ def test_just_below_the_limit_slip_ceases_and_just_above_it_goes_on(
     scene: str, changes: dict[str, Any]
 ) -> None:
     factor = limit(scene, **SMALL, **changes)
-    loads = [name for name in ("peak", "body_force") if name in changes]
+    names = "peak", "body_force", "right_displacement"
+    loads = [name for name in names if name in changes]
     for share, goes_on in ((0.995, False), (1.005, True)):
         scaled = {name: share * factor * changes[name] for name in loads}
         assert slips(scene, **SMALL, **(changes | scaled)) is goes_on, share
+
+
+PUSHED: dict[str, Any] = {
+    "gap": "flat",
+    "top": "pushed",
+    "top_normal_displacement": -1e-5,
+    "top_normal_load": "hold",
+    "left": "pushed",
+    "left_normal_load": "cycles",
+    "friction": 0.4,
+    "elements": 6,
+    "elements_up": 3,
+    "substructures": 1,
+    "instants": 81,
+}
+
+
+@pytest.mark.parametrize(
+    ("scene", "changes", "name"),
+    [
+        ("bar", SMALL | MOVED, "right_displacement"),
+        ("block", PUSHED, "left_normal_displacement"),
+    ],
+)
+def test_what_is_moved_over_its_support_slips_however_little_it_is_moved(
+    scene: str, changes: dict[str, Any], name: str
+) -> None:
+    """Of the block a motion 2.4 times as large was said to cease slipping."""
+    for size in (1e-6, 1e-8):
+        settings = CATALOGUE[scene].checked({**changes, name: size})
+        run = finished_run(settings, errors=False, indicators=False)
+        assert reading("shakedown_factor")(run) == 0.0
+        assert cycles_of(settings, run.iterate).slip[:, -1].any()
 
 
 def test_a_pushed_body_shakes_down_up_to_twice_its_friction() -> None:

@@ -241,6 +241,50 @@ def test_energy_stiffness_and_slip_are_those_of_the_closed_form() -> None:
     assert work == pytest.approx(2.0 * exact.layers[0].strength * slip, rel=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("law", "is_told"),
+    [
+        ({}, True),
+        ({"friction_law": "general", "cohesion": 1e3}, True),
+        ({"friction_law": "compliant", "contact_stiffness": 1.0}, False),
+        ({"friction_law": "general", "tangential_stiffness": 1e8}, False),
+    ],
+)
+def test_the_stiffness_while_nothing_slips_is_told_of_rigid_contacts_alone(
+    law: dict[str, Any], is_told: bool
+) -> None:
+    """A strand whose wires gave way was said to be eight times as stiff as it was."""
+    settings = settings_of(curvature=1e-5, load="ramp", layers=2, instants=3, **law)
+    run = finished_run(settings, errors=False)
+    assert taken("dissipation", run) == 0.0
+    stiffness = taken("stuck_bending", run)
+    assert np.isfinite(stiffness) == is_told
+    if is_told:
+        assert taken("bending_stiffness", run) == pytest.approx(stiffness, rel=0.01)
+
+
+def test_a_wire_that_stands_for_its_layer_counts_as_often_in_all_shares() -> None:
+    """A metre of strand has 1 / cos(lay) of each wire; each layer was one wire."""
+    settings = settings_of(
+        construction="conductor", load="cycle", curvature=0.02, tension=3e4, instants=21
+    )
+    run = finished_run(settings, errors=False)
+    section = settings.section
+    lengths = np.array([layer.wires / np.cos(layer.lay) for layer in section.layers])
+    lengths /= lengths.sum()
+    statuses = [run.iterate.contact(name).status for name in run.problem.contacts]
+    largest = int(np.argmax(np.abs(run.force)))
+    stuck = [float(np.mean(status[:, largest] == 0)) for status in statuses]
+    assert taken("stuck_share", run) == pytest.approx(lengths @ stuck, rel=1e-9)
+    assert taken("stuck_share", run) != pytest.approx(np.mean(stuck), rel=0.05)
+    # Half a turn of each wire has as many points: a metre of strand has more of those
+    # of small wires with a short lay.
+    turns = [wire.stands_for / wire.along[-1] for wire in settings.structure().wires]
+    slipped = [float(np.any(np.abs(status) == 1, axis=1).mean()) for status in statuses]
+    counted = np.average(slipped, weights=turns)
+    assert taken("slipped_share", run) == pytest.approx(counted, rel=1e-9)
+
+
 WIRE = WireLayer(6, diameter=3e-3, young=2e11, lay=np.radians(12.0))
 BENT = BentWire(WIRE, radius=4e-3, strength=3000.0)
 

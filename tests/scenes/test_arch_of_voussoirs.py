@@ -201,6 +201,31 @@ def test_limits_of_an_arch_are_quantities_of_its_run():
         assert not QUANTITIES["thinnest"].applies(settings_of(**change))
 
 
+@pytest.mark.parametrize(
+    ("law", "falls"),
+    [
+        ({"friction": 0.2, "friction_law": "general", "cohesion": 1e5}, False),
+        ({"friction": 0.6, "friction_law": "general", "friction_cap": 1e3}, True),
+    ],
+)
+def test_statics_tells_no_limits_of_an_arch_that_other_friction_holds(law, falls):
+    """A mu of 0.35 was called the least; one of 0.2 stood, and one of 0.6 fell."""
+    changes = {
+        "voussoirs": 15,
+        "thickness": 0.15,
+        "instants": 5,
+        "abutment_load": MOVED,
+    }
+    settings = settings_of(**changes, **law)
+    problem = discretise(settings)
+    assert (collapse_of(problem) is not None) is falls
+    for name in ("thinnest", "least_friction"):
+        assert QUANTITIES[name].applies(settings_of(**changes))
+        assert not QUANTITIES[name].applies(settings)
+    assert list(settings_of(**changes, friction=0.6).exact(problem))
+    assert not list(settings.replace(friction=0.6).exact(problem))
+
+
 def test_the_closed_form_is_the_thrust_of_an_arch_with_hinges():
     settings = settings_of(voussoirs=15, instants=5, abutment_load=MOVED)
     problem = discretise(settings)

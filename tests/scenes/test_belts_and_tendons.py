@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -126,6 +127,47 @@ def test_a_rope_that_runs_has_the_ratio_of_its_angle_both_ways():
     # 3.1 mm of each metre that passes.
     creep = QUANTITIES["creep"](run)
     assert creep == pytest.approx(1000.0 * (limit - 1.0) / (5e9 * 1e-4), rel=2e-3)
+
+
+@pytest.mark.parametrize("friction", [0.6, 0.3])
+@pytest.mark.parametrize("pull", [700.0, 1400.0])
+def test_the_friction_that_holds_a_rope_is_eulers_whatever_mu_the_run_has(
+    friction, pull
+):
+    """From the sums of friction and pressure it was 0.38 at a mu of 0.6, not 0.28."""
+    run = finished(
+        settings_of(
+            friction=friction, pull=pull, elements=60, instants=5, tail="pulled"
+        )
+    )
+    assert run.solution.is_certified
+    needed = math.log((1000.0 + pull) / 1000.0) / math.pi
+    assert QUANTITIES["holding_friction"](run) == pytest.approx(needed, rel=1e-6)
+    held = 1000.0 * math.expm1(friction * math.pi)
+    assert QUANTITIES["holding_force"](run) == pytest.approx(held, rel=1e-6)
+
+
+def test_errors_of_a_belt_are_the_same_whatever_the_unit_of_length():
+    """Turns of beams, in rad, were displacements, in m, of errors and indicators."""
+    errors = []
+    indicators = []
+    for size in (1.0, 128.0):
+        settings = settings_of(
+            drum_radius=0.1 * size,
+            section=1e-4 * size,
+            young=5e9 / size,
+            elements=20,
+            instants=9,
+            start="zero",
+        )
+        problem = discretise(settings)
+        distance = distance_to(reference_of(problem), problem)
+        search = islice(iterations(problem, method_of(settings)), 6)
+        iterates = list(search)
+        errors.append([distance.of_displacement(iterate) for iterate in iterates])
+        indicators.append([iterate.violation for iterate in iterates])
+    assert errors[0] == pytest.approx(errors[1], rel=1e-6)
+    assert indicators[0] == pytest.approx(indicators[1], rel=1e-6)
 
 
 def test_a_drum_carries_nothing_of_ends_that_are_pulled_alike():

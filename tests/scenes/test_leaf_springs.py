@@ -25,6 +25,8 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.layers import LayersSettings
 from solver.scenes.method import method_of
 from solver.settings.values import SettingError
+from solver.study.quantities import reading
+from solver.study.scene_run import finished_run
 
 LENGTH = 0.5
 HEIGHT = 0.01
@@ -49,6 +51,24 @@ LEAVES = {**LOOSE, "layer_lengths": "graduated"}
 
 def settings_of(**values: Any) -> Any:
     return CATALOGUE["layers"].checked(values)
+
+
+@pytest.mark.parametrize("elements", [5, 20])
+def test_layers_touch_and_hold_each_other_up_to_their_clamp(elements: int) -> None:
+    """The half element beside the clamp was left out: 10 % of five elements."""
+    settings = settings_of(
+        layers=3,
+        elements=elements,
+        elements_up=2,
+        instants=3,
+        pressure=PRESSURE,
+        deflection=0.0,
+        pull=1e5,
+    )
+    run = finished_run(settings, errors=False)
+    assert reading("contact_width")(run) == pytest.approx(2.0 * LENGTH, rel=1e-12)
+    held = settings.friction * PRESSURE * LENGTH
+    assert reading("holding_force")(run) == pytest.approx(held, rel=0.01)
 
 
 def deflection(settings: Any) -> Array:

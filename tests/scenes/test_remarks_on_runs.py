@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from functools import cache
 from typing import Any
 
@@ -14,6 +15,7 @@ from solver.commands.cli import main
 from solver.latin.end import cost as costs
 from solver.latin.end.cost import LARGE, LONG, RunCost, run_cost
 from solver.reference.incremental import reference_of
+from solver.reference.other_positions import other_positions
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.scenes.remarks import (
@@ -169,6 +171,42 @@ def test_the_strain_of_a_bar_is_force_over_stiffness():
         settings.structure(), problem, reference_of(problem).displacement
     )
     assert found == pytest.approx(900.0 / (210e9 * 3.14e-6))
+
+
+@pytest.mark.parametrize(
+    ("changes", "is_strained"),
+    [({"pressure": 1e9, "young": 1e6}, True), ({"pressure": 1.0}, False)],
+)
+def test_a_bar_is_strained_by_ground_that_settles_only_if_it_sticks(
+    changes, is_strained
+):
+    """Bars that stuck were said to have no strain, those that slipped the ground's."""
+    free = {"peak": 0.0, "left_end": "free", "right_end": "free", "settlement": 0.1}
+    sizes = {"elements": 10, "instants": 5, "substructures": 1}
+    settings = CATALOGUE["bar"].checked(free | sizes | changes)
+    iterate = finished_run(settings, errors=False).iterate
+    remarks = " ".join(remarks_on(settings, iterate))
+    assert ("strains or slopes reach 0.1" in remarks) is is_strained
+
+
+def test_a_rope_that_slides_freely_may_be_as_far_away_as_its_points():
+    """The angle it turns by was told: ten times as much on a drum of 0.1 m."""
+    free = {"friction": 0.0, "pull": 0.0, "elements": 20, "instants": 5}
+    settings = CATALOGUE["belt"].checked(free)
+    iterate = finished_run(settings, errors=False).iterate
+    others = other_positions(
+        iterate.problem, iterate.displacement, iterate.contact_force
+    )
+    inside = iterate.problem.inside
+    away = 0.0
+    for instant, other in others.items():
+        apart = (other - iterate.displacement[:, instant])[:, None]
+        still = inside.displacement(0.0 * apart, [0])
+        moved = inside.displacement(apart, [0]) - still
+        away = max(away, float(np.abs(moved).max()))
+    (remark,) = remarks_on(settings, iterate)
+    told = float(re.search(r"up to (\S+) m away", remark)[1])
+    assert told == pytest.approx(away, rel=0.02)
 
 
 def test_the_slope_of_a_sheared_body_is_its_shear_and_sliding_is_none():

@@ -47,8 +47,12 @@ def thrust(run: FinishedRun, at: float | None) -> float:
 
 
 def _weighs_alone(settings: Settings) -> bool:
+    """Check whether an arch carries its weight and a fill by the friction mu N."""
     return (
-        _is_arch(settings) and settings.has("unit_weight") and not settings.has("live")
+        _is_arch(settings)
+        and settings.law.is_by_pressure_alone
+        and settings.has("unit_weight")
+        and not settings.has("live")
     )
 
 

@@ -14,6 +14,7 @@ from solver.laws import OPEN, Contact
 from solver.study.quantities.body_measures import loop_is_over_displacement
 from solver.study.quantities.cycles import instants_of_cycle
 from solver.study.quantities.finished import FinishedRun, largest_load
+from solver.study.quantities.held_ends import held_lengths
 from solver.study.quantities.quantity import CYCLE, Parameter, quantity
 
 SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
@@ -79,9 +80,15 @@ def peak_pressure(run: FinishedRun) -> float:
 
 @quantity("Largest length in contact", "m", applies=_opens)
 def contact_width(run: FinishedRun) -> float:
-    """Largest length over which bodies touch at once, m."""
+    """Largest length over which bodies touch at once, m.
+
+    Held ends without points touch where the points beside them do.
+    """
     length, status = _touching(run)
-    return float((length[:, None] * (status != OPEN)).sum(axis=0).max())
+    surfaces = run.problem.contacts.surfaces
+    held = np.concatenate([held_lengths(run, name) for name in surfaces])
+    whole = length + held
+    return float((whole[:, None] * (status != OPEN)).sum(axis=0).max())
 
 
 def _lengths(run: FinishedRun) -> dict[str, Array]:
@@ -95,11 +102,14 @@ def _lengths(run: FinishedRun) -> dict[str, Array]:
 def _touching(run: FinishedRun) -> tuple[Array, NDArray[np.int8]]:
     """Tributary length and status of all points of surfaces, one surface after another.
 
-    The lengths have shape (n_points,), m, the statuses (n_points, n_instants).
+    The lengths have shape (n_points,), m, the statuses (n_points, n_instants). That of
+    a point is the length of all points for which it stands.
     """
     lengths = _lengths(run)
     status = [run.iterate.contact(name).status for name in lengths]
-    return np.concatenate(list(lengths.values())), np.concatenate(status)
+    contacts = run.problem.contacts
+    copies = contacts.copies[contacts.on_surfaces]
+    return copies * np.concatenate(list(lengths.values())), np.concatenate(status)
 
 
 @quantity(
@@ -152,16 +162,17 @@ def stuck_share(run: FinishedRun, instant: int) -> float:
 def _slipped_shares(run: FinishedRun) -> Array:
     """Share of the points that have slipped by each instant, (n_instants,).
 
-    Only points of surfaces that can slip count.
+    Only points of surfaces that can slip count, each with all for which it stands.
     """
     problem = run.problem
     # A point counts from its first slip on.
     slipped = np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
     still = _stand_still(run)
-    counted = slipped[problem.contacts.on_surfaces & ~still]
-    if not len(counted):
+    is_counted = problem.contacts.on_surfaces & ~still
+    copies = problem.contacts.copies[is_counted]
+    if not copies.size:
         return np.zeros(slipped.shape[1])
-    return np.asarray(counted.mean(axis=0))
+    return np.asarray(copies @ slipped[is_counted] / copies.sum())
 
 
 def _stand_still(run: FinishedRun) -> Flags:

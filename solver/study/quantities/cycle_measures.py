@@ -12,7 +12,12 @@ from solver.discrete.rope.rope import Rope
 from solver.discrete.rope.wire_forces import stress_ranges
 from solver.laws import OPEN, FrictionLaw
 from solver.reference.assembly import NoReferenceError
-from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
+from solver.reference.shakedown import (
+    driven_limit,
+    largest_swing,
+    shakedown_limit,
+    slip_space,
+)
 from solver.settings.scene import Settings
 from solver.study.quantities.body_measures import is_rope
 from solver.study.quantities.contact_measures import are_clamped
@@ -102,13 +107,17 @@ def sliding_share(run: FinishedRun) -> float:
 
 
 def _free_lengths(run: FinishedRun) -> Array:
-    """Tributary lengths of points of surfaces, (n_points,), m; 0 of clamped ones."""
+    """Tributary lengths of points of surfaces, (n_points,), m; 0 of clamped ones.
+
+    That of a point is the length of all points for which it stands.
+    """
     contacts = run.problem.contacts
     lengths = []
     for law in contacts.laws.values():
         is_free = ~are_clamped(run.problem, law)
         lengths.append(law.by_point(law.weights * is_free))
-    return np.asarray(contacts.of_points(lengths)[contacts.on_surfaces])
+    represented = contacts.copies * contacts.of_points(lengths)
+    return np.asarray(represented[contacts.on_surfaces])
 
 
 @quantity("Shakedown factor on the swing of the load", applies=has_a_limit)
@@ -118,10 +127,13 @@ def shakedown_factor(run: FinishedRun) -> float:
     With that factor slip can still cease (MATHEMATICS.md, 15). NaN where no limit
     is known, or where not even the mean load keeps all contacts closed.
     """
+    problem = run.problem
+    last = _last(run)
     try:
-        if run.problem.opens:
-            return largest_swing(slip_space(run.problem), _last(run))[0]
-        return shakedown_limit(run.problem, _last(run))
+        if problem.opens:
+            swing, _ = largest_swing(slip_space(problem), last)
+            return min(swing, driven_limit(problem, last))
+        return shakedown_limit(problem, last)
     except NoReferenceError:
         return math.nan
 
@@ -141,9 +153,17 @@ def _last(run: FinishedRun) -> slice:
     return slice(0, None)
 
 
-@quantity("Bending stiffness while nothing slips", "N·m^2", applies=is_rope)
+def _sticks_rigidly(settings: Settings) -> bool:
+    """Check whether the wires of a rope do not give way before they slip."""
+    return is_rope(settings) and math.isinf(settings.law.stiffness)
+
+
+@quantity("Bending stiffness while nothing slips", "N·m^2", applies=_sticks_rigidly)
 def stuck_bending(run: FinishedRun) -> float:
-    """Bending stiffness with all wires sticking, N m^2."""
+    """Bending stiffness with all wires sticking, N m^2.
+
+    Of a strand whose contacts give way before they slip it is smaller, and not known.
+    """
     return _rope(run.settings).section.stuck_bending
 
 

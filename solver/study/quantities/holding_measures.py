@@ -8,19 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import RESIDUE, Array, Flags, Indices
-from solver.discrete.rods.rods import Rods
-from solver.discrete.rope.rope import Rope
+from solver.discrete.plane.makers.band import MOST_EXPONENT, Band
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
 from solver.settings.scene import Settings
+from solver.study.quantities.belt_measures import SLACK
 from solver.study.quantities.finished import EQUAL, FinishedRun
+from solver.study.quantities.held_ends import held_lengths
 from solver.study.quantities.quantity import quantity
 
 
 def _rubs_by_mu(settings: Settings) -> bool:
     """Check whether the friction bound is mu N, independent of slip."""
-    law = settings.law
-    return law.cohesion == 0.0 and math.isinf(law.cap) and law.slip_factor is None
+    return settings.law.is_by_pressure_alone
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,19 +36,14 @@ class _Hold:
         Sum of the friction forces, shape (n_instants,), N.
     slides
         Whether all its points slip in one direction, shape (n_instants,).
+    needed
+        Mobilised coefficient of friction, shape (n_instants,); 0 without pressing.
     """
 
     pressing: Array
     carried: Array
     slides: Flags
-
-    @property
-    def needed(self) -> Array:
-        """Mobilised coefficient of friction, (n_instants,); 0 without pressing."""
-        nothing = np.zeros_like(self.pressing)
-        return np.divide(
-            np.abs(self.carried), self.pressing, nothing, where=self.pressing > 0.0
-        )
+    needed: Array
 
     def sliding(self, friction: float, instants: Array) -> Array:
         """Pressing forces during sliding, and at its onset, (n,), N.
@@ -100,6 +95,11 @@ def _holds(run: FinishedRun) -> list[_Hold]:
     """Resultant forces of every interface with friction."""
     # A point that a clamp holds, too, never slips: it counts as free.
     determinate = determinate_forces(run.problem)
+    band = run.settings.structure()
+    if isinstance(band, Band):
+        (name,) = run.problem.contacts.surfaces
+        *_, tangential = run.problem.contacts.forces[name]
+        return [_hold_of_band(run, band, _hold(run, name, determinate[tangential]))]
     holds = []
     for name in run.problem.contacts.surfaces:
         *_, tangential = run.problem.contacts.forces[name]
@@ -124,44 +124,51 @@ def _hold(run: FinishedRun, name: str, determinate: Flags) -> _Hold:
     backward = ((status == -1) | is_free).all(axis=0)
     slides = (forward | backward) & ~is_free.all(axis=0)
     pressing_beside, friction_beside = _at_held_ends(run, name)
+    pressed = pressing.sum(axis=0) + pressing_beside @ pressing
+    carried = friction.sum(axis=0) + friction_beside @ friction
+    nothing = np.zeros_like(pressed)
+    needed = np.divide(np.abs(carried), pressed, nothing, where=pressed > 0.0)
+    return _Hold(pressed, carried, slides, needed)
+
+
+def _hold_of_band(run: FinishedRun, band: Band, hold: _Hold) -> _Hold:
+    """Reserve to sliding of a band, by Euler's formula from the tensions of its ends.
+
+    The sum of the pressing forces says less: it grows as a band slips, and what slips
+    first presses most.
+    """
+    tensions = band.tensions(run.problem, run.iterate)
+    ends = np.sort(tensions[[0, -1]], axis=0)
+    # No friction holds a band without any tension at its other end.
+    least = SLACK * float(np.abs(ends).max())
+    smaller, larger = np.maximum(ends, least)
+    ratio = np.divide(larger, smaller, np.ones_like(larger), where=smaller > 0.0)
+    exponent = min(run.settings.friction * band.guide.angle, MOST_EXPONENT)
+    # Friction adds as much to the smaller tension before the band slides.
+    reached = smaller * math.expm1(exponent) / run.settings.friction
     return _Hold(
-        pressing=pressing.sum(axis=0) + pressing_beside @ pressing,
-        carried=friction.sum(axis=0) + friction_beside @ friction,
-        slides=slides,
+        pressing=np.where(hold.slides, hold.pressing, reached),
+        carried=hold.carried,
+        slides=hold.slides,
+        needed=np.log(ratio) / band.guide.angle,
     )
 
 
 def _at_held_ends(run: FinishedRun, name: str) -> tuple[Array, Array]:
     """Forces at held ends that have no points, over those of the points beside them.
 
-    Ends of wires that are held together do not rub in the discrete problem. They are
-    pressed like what is beside them, and friction goes on evenly up to them, as it does
-    up to the clamp of a body (`solver.discrete.driven_friction`); springs between them
-    are not strained. Shares of pressing force and of friction, (n_points,) both.
+    Ends of wires or layers that are held together do not rub in the discrete problem.
+    They are pressed like what is beside them, and friction goes on evenly up to them,
+    as it does up to the clamp of a body (`solver.discrete.driven_friction`); springs
+    between them are not strained. Shares of pressing force and of friction, (n_points,)
+    both.
     """
     law = run.problem.contacts[name]
     lengths = law.by_point(law.weights)
-    pressing = np.zeros_like(lengths)
-    # The first and the last point are those beside the ends.
-    for point, half in _held_lengths(run, name).items():
-        pressing[point] += half / lengths[point]
+    pressing = held_lengths(run, name) / lengths
     if law.tangential.compliance is None:
         return pressing, pressing
     return pressing, np.zeros_like(pressing)
-
-
-def _held_lengths(run: FinishedRun, name: str) -> dict[int, float]:
-    """Lengths, m, of held ends without points, by the points beside them: 0 or -1."""
-    structure = run.settings.structure()
-    if isinstance(structure, Rope):
-        wire = structure.wires[run.problem.contacts.number_of[name]]
-        half = 0.5 * wire.length / structure.elements
-        return {0: half, -1: half}
-    if isinstance(structure, Rods) and structure.wires > 1:
-        half = 0.5 * structure.length / structure.elements
-        ends = {0: structure.left, -1: structure.right}
-        return {point: half for point, end in ends.items() if end.is_prescribed}
-    return {}
 
 
 def _pressing_by_friction(run: FinishedRun, name: str) -> Array:
