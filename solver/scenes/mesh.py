@@ -301,8 +301,7 @@ class MeshSettings(PlaneSettings):
 
     def _check_tables(self) -> None:
         """Refuse tables without a row for each body or contact."""
-        if self.n_interfaces:
-            shared.factors_of(self)
+        shared.factors_of(self)
         numbers = [row[0] for row in self.points("materials")]
         if numbers != list(range(1, self.n_bodies + 1)):
             names = ", ".join(self.parts.names)
@@ -369,9 +368,7 @@ class MeshSettings(PlaneSettings):
 
     def _joints(self) -> Iterator[Joint]:
         """Contacts with their mu."""
-        factors = np.ones(0)
-        if self.n_interfaces:
-            factors = shared.factors_of(self)
+        factors = shared.factors_of(self)
         for contact, factor in zip(self.parts.contacts, factors, strict=True):
             yield Joint(
                 contact.name,
@@ -385,20 +382,16 @@ class MeshSettings(PlaneSettings):
 
     def sentence(self) -> str:
         """Describe the bodies in a sentence."""
-        bodies = f"{self.n_bodies} bodies"
-        if self.n_bodies == 1:
-            bodies = "One body"
-        touch = "slide freely on each other"
+        touch = "slide freely on"
         if self.is_rough:
-            touch = "rub on each other"
-        if not self.n_interfaces:
-            touch = "touch nothing"
+            touch = "rub on"
         parts = []
         for line, conditions in self.conditions.items():
             if conditions and conditions != ("free",):
                 said = [re.sub(r" ([xy])$", r" along \1", each) for each in conditions]
                 parts.append(f"“{split_phrase(line)[0]}” {' and '.join(said)}")
-        return f"{bodies} of a mesh {touch}; sides: {shared.listed(parts)}."
+        sides = shared.listed(parts)
+        return f"{self.n_bodies} bodies of a mesh {touch} each other; sides: {sides}."
 
 
 def _of_setting(name: str, refusal: RefusedError) -> SettingError:

@@ -121,6 +121,10 @@ BROKEN = {
         two_squares(bodies=[1, 2, 1, 1], edges=[[0, 1]], lines=[4]),
         "a mesh of 2 pieces",
     ),
+    "a single body": (
+        two_squares(bodies=[1, 1, 1, 1], edges=[[0, 1], [4, 5]], lines=[4, 5]),
+        "without a contact",
+    ),
     "does not match": (
         two_squares(
             points=np.array(
