@@ -346,9 +346,6 @@ class ArchSettings(PlaneSettings):
             kind = "A round arch"
         if self.centres:
             kind = "A pointed arch"
-        touch = "slide freely on"
-        if self.is_rough:
-            touch = "rub on"
         filled = ""
         if self.fill:
             filled = ", filled above,"
@@ -364,7 +361,8 @@ class ArchSettings(PlaneSettings):
                 words = "lowered", "raised", "lowered and raised"
             done = shared.acting(path, *words)
             parts.append(f"its right abutment is {done}")
+        stones = f"{self.voussoirs} stones that only touch{filled}"
         return (
-            f"{kind} of {self.voussoirs} stones that only touch{filled} and {touch} "
-            f"each other stands on two abutments; {shared.listed(parts)}."
+            f"{kind} of {stones} and {self.touch} each other stands on two abutments; "
+            f"{shared.listed(parts)}."
         )

@@ -107,7 +107,9 @@ class BundleSettings(PlaneSettings):
         "Force towards the middle by which a band presses each outer wire between the "
         "lowest and the highest row, over the force of the plate on one wire.",
         title="Force of the band",
-        applies=lambda settings: settings.arrangement == "hexagon",
+        applies=lambda settings: (
+            settings.arrangement == "hexagon" and settings.has_plate
+        ),
     )
     unit_weight = LOAD.quantity(
         0.0,
@@ -285,9 +287,6 @@ class BundleSettings(PlaneSettings):
 
     def sentence(self) -> str:
         """Describe the bundle in a sentence."""
-        touch = "slide freely on each other"
-        if self.is_rough:
-            touch = "rub on each other"
         lie = "in a heap on the ground"
         if self.arrangement == "hexagon":
             lie = "side by side on the ground"
@@ -304,4 +303,5 @@ class BundleSettings(PlaneSettings):
             # A heap of a single row.
             done = done.replace("them", "it")
             return f"One round wire lies on the ground{done}."
-        return f"{self.n_wires} round wires lie {lie}, and {touch}{done}."
+        wires = f"{self.n_wires} round wires lie {lie}"
+        return f"{wires}, and {self.touch} each other{done}."

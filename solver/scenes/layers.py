@@ -265,8 +265,10 @@ class LayersSettings(RectangleSettings):
         if self.layer_lengths != "equal":
             layers = f"{layers} of different lengths"
         pressed = "lie on each other"
-        if self.pressure:
-            pressed = "are pressed together and rub"
+        if np.any(self.path("pressure_load")):
+            pressed = "are pressed together and slide freely"
+            if self.is_rough:
+                pressed = "are pressed together and rub"
         bent = self.path("bend_load")
         pull = self.path("pull_load")
         ends = shared.acting(bent, "bent up", "bent down", "bent up and down")

@@ -382,16 +382,14 @@ class MeshSettings(PlaneSettings):
 
     def sentence(self) -> str:
         """Describe the bodies in a sentence."""
-        touch = "slide freely on"
-        if self.is_rough:
-            touch = "rub on"
         parts = []
         for line, conditions in self.conditions.items():
             if conditions and conditions != ("free",):
                 said = [re.sub(r" ([xy])$", r" along \1", each) for each in conditions]
                 parts.append(f"“{split_phrase(line)[0]}” {' and '.join(said)}")
         sides = shared.listed(parts)
-        return f"{self.n_bodies} bodies of a mesh {touch} each other; sides: {sides}."
+        bodies = f"{self.n_bodies} bodies of a mesh"
+        return f"{bodies} {self.touch} each other; sides: {sides}."
 
 
 def _of_setting(name: str, refusal: RefusedError) -> SettingError:

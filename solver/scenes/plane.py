@@ -110,6 +110,13 @@ class PlaneSettings(Settings):
         return bool(self.friction or self.law.cohesion)
 
     @property
+    def touch(self) -> str:
+        """Words on how bodies touch, before those that they touch."""
+        if self.is_rough:
+            return "rub on"
+        return "slide freely on"
+
+    @property
     def n_interfaces(self) -> int:
         """Number of interfaces: between bodies, or of one body with its support."""
         return max(self.n_bodies - 1, 1)

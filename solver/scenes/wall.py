@@ -434,10 +434,7 @@ class WallSettings(RectangleSettings):
             pressed = f", with a stiff cap{pressed or ','}"
         if self._settles:
             ground = f"{ground}, of which a part settles"
-        touch = "slide freely on"
-        if self.is_rough:
-            touch = "rub on"
         return (
-            f"{bricks}{pressed} only touch, and {touch} each other and {ground}; the "
-            f"top is {driven}."
+            f"{bricks}{pressed} only touch, and {self.touch} each other and "
+            f"{ground}; the top is {driven}."
         )
