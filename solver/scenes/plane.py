@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -24,6 +25,7 @@ from solver.settings.definitions import (
     POSITIVE,
     redefined,
 )
+from solver.settings.load_paths import PRESETS
 from solver.settings.scene import Settings
 
 LARGEST_MATRIX = 30_000_000
@@ -108,6 +110,11 @@ class PlaneSettings(Settings):
     def is_rough(self) -> bool:
         """Check whether there is friction at any pair."""
         return bool(self.friction or self.law.cohesion)
+
+    @cached_property
+    def hold(self) -> Array:
+        """Factor on weights over time, (n_instants,): whole after the first quarter."""
+        return PRESETS["hold"].value(self.times() / self.duration, 1)
 
     @property
     def touch(self) -> str:
@@ -247,3 +254,26 @@ class RectangleSettings(PlaneSettings):
                 f"parts smaller than {columns} by {rows} elements",
                 "give more substructures along or up, or fewer elements",
             )
+
+
+class ShapedSettings(PlaneSettings):
+    """Settings of bodies of any shape that touch at joints; one metre thick."""
+
+    has_joints = True
+
+    friction_profile = redefined(
+        PlaneSettings.param["friction_profile"], "uniform", applies=lambda _: False
+    )
+    instants = redefined(PlaneSettings.param["instants"], 41)
+    substructures = redefined(
+        RectangleSettings.param["substructures"],
+        1,
+        doc="Number of pieces (substructures) of each body.",
+        title="Substructures of a body",
+    )
+    macro_degree = redefined(RectangleSettings.param["macro_degree"], 1)
+    start = redefined(RectangleSettings.param["start"], "zero")
+
+    def weight(self, density: float) -> Array:
+        """Force per volume by a weight per volume, (2, n_instants), N/m^3."""
+        return np.outer([0.0, -density], self.hold)

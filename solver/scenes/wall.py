@@ -384,8 +384,7 @@ class WallSettings(RectangleSettings):
     def bodies(self) -> Stack:
         """The wall; one metre thick."""
         angle = np.radians(self.path("slope_load"))
-        hold = PRESETS["hold"].value(self.times() / self.duration, 1)
-        weight = self.unit_weight * hold
+        weight = self.unit_weight * self.hold
         driven = SideComponent(self.top == "moved", self.path("top_load"))
         pressed = SideComponent(False, -self.path("pressure_load"), is_pressure=True)
         stack = replace(
