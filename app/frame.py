@@ -119,6 +119,7 @@ class Run:
     interfaces: Mapping[str, FrictionInterface]
     """All interfaces with friction, by name."""
     geometry: Geometry
+    n_substructures: int
     across: tuple[str, str]
     up: tuple[str, str]
     """Title and SI unit of the loop's displacement and force."""

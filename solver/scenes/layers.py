@@ -14,7 +14,6 @@ from solver.arrays import Array
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.plane.rectangles.sides import Side, SideComponent
 from solver.discrete.plane.rectangles.stack import Stack
-from solver.discrete.plane.rectangles.stack_bodies import ends_along
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.reference.closed_forms import ExactCurve
@@ -177,13 +176,6 @@ class LayersSettings(RectangleSettings):
     def n_nodes(self) -> int:
         """Number of nodes of all layers."""
         return sum(span + 1 for span in self.spans) * self.nodes[1]
-
-    @property
-    def n_substructures(self) -> int:
-        """Number of substructures in all."""
-        ends = ends_along(self.elements, self.substructures, self.spans)
-        columns = sum(int(np.count_nonzero(ends <= span)) for span in self.spans)
-        return columns * int(self.substructures_up)
 
     @property
     def loop_is_over_displacement(self) -> bool:

@@ -179,7 +179,7 @@ class RectangleSettings(PlaneSettings):
         "What the coarse problem balances on each side of a substructure. 0: "
         "resultants; 1: also moments and linear extension. Sides more than three times "
         "as long as the substructure is deep get more by themselves.",
-        applies=lambda settings: settings.multiscale and settings.n_substructures > 1,
+        applies=lambda settings: settings.multiscale and settings.is_divided,
     )
     start = METHOD.choice(
         "zero",
@@ -211,9 +211,9 @@ class RectangleSettings(PlaneSettings):
         return self.n_bodies * math.prod(self.nodes)
 
     @property
-    def n_substructures(self) -> int:
-        """Number of substructures in all."""
-        return self.n_bodies * self.substructures * self.substructures_up
+    def is_divided(self) -> bool:
+        """Check whether there is more than one substructure."""
+        return super().is_divided or self.substructures_up > 1
 
     def stack(self) -> Stack:
         """Make the bodies, free on all sides and without any load."""

@@ -112,11 +112,6 @@ class StrandSettings(Settings):
     section = shared.section("Area of the cross section of a wire.", shared.STRAND)
 
     @property
-    def n_substructures(self) -> int:
-        """Number of substructures in all."""
-        return int(self.wires * max(self.substructures, 2 if self.broken else 1))
-
-    @property
     def n_bodies(self) -> int:
         """Number of wires."""
         return int(self.wires)

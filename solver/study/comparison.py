@@ -110,8 +110,9 @@ def results_in(table: Table, settings: Settings, most: float = MOST) -> OtherRes
         during the run; for a displacement of other scenes than a single rod.
     """
     table = table.given_as("the results", CAN)
-    more = "leave some out, or give all of them to the command compare"
-    check_count(table, most, more)
+    check_count(
+        table, most, "leave some out, or give all of them to the command compare"
+    )
     kind = settings.kind
     quantity, columns = _columns(table)
     if quantity == DISPLACEMENT and kind != "rod":
