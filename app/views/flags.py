@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-import panel as pn
 from bokeh.models import Line, MultiLine, Range1d, VBar
 from bokeh.plotting import figure
 
@@ -72,17 +71,13 @@ class CaseFlag:
             # What it lies on, where no place is free, is to be read through.
             background_fill_alpha=0.75,
         )
-        view.follow_size(WIDTH, HEIGHT)
-        # After the view, which takes the new size first.
-        for name in ("inner_width", "inner_height"):
-            plot.on_change(name, self._move)
+        view.follow_size(WIDTH, HEIGHT, self._place_again)
 
-    def _move(self, name: str, old: Any, new: Any) -> None:
+    def _place_again(self) -> None:
         """Place the name again, in a figure of another size."""
         # Before it was shown the axes have no limits.
         if self._shown is not None:
-            with pn.io.hold():
-                self.show(self._shown)
+            self.show(self._shown)
 
     def show(self, frame: Frame) -> None:
         """Show the flag if the number is known for a frame, and stands in this plot."""
