@@ -84,18 +84,17 @@ class SettingControl:
             "width": WIDTH,
             "margin": (4, 0),
         }
-        if isinstance(definition, CurveParameter):
-            options = [*definition.presets, POINTS]
-            field = pmui.Select(options=options, variant="standard", **more)
-            return field, [pn.Column(field, margin=0)]
         if isinstance(definition, param.Boolean):
             field = pmui.Switch(**more)
             return field, [field]
-        if isinstance(definition, TextParameter):
-            return self._make_text(definition, more)
-        if isinstance(definition, param.Selector):
-            options = list(definition.objects)
+        options = self._options()
+        if options:
             field = pmui.Select(options=options, variant="standard", **more)
+            if isinstance(definition, CurveParameter):
+                return field, [pn.Column(field, margin=0)]
+            return field, [field]
+        if isinstance(definition, TextParameter):
+            field = pmui.TextInput(variant="standard", **more)
             return field, [field]
         # All others are numbers: a field to type in, and below it a slider.
         more |= {"margin": (3, 0, 0, 0), "variant": "standard", **looks("number")}
@@ -105,16 +104,16 @@ class SettingControl:
         self.slider = self._make_slider()
         return field, [field, self.slider]
 
-    def _make_text(
-        self, definition: TextParameter, more: dict[str, Any]
-    ) -> tuple[Any, list[Any]]:
-        """Make the field of a text: presets and an open file, or text input."""
-        if not definition.is_file:
-            field = pmui.TextInput(variant="standard", **more)
-            return field, [field]
-        options = list(definition.presets)
-        field = pmui.Select(options=options, variant="standard", **more)
-        return field, [field]
+    def _options(self) -> list[str]:
+        """Choices of a setting that is chosen from a list; else none."""
+        definition = self._definition
+        if isinstance(definition, CurveParameter):
+            return [*definition.presets, POINTS]
+        if isinstance(definition, TextParameter) and definition.is_file:
+            return list(definition.presets)
+        if isinstance(definition, param.Selector):
+            return list(definition.objects)
+        return []
 
     def _make_slider(self) -> pmui.FloatSlider:
         lowest, highest = self._definition.softbounds

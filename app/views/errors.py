@@ -56,13 +56,6 @@ CURVES = {
 class ErrorPlot(View):
     """A plot over all iterations so far, also while an earlier iterate is shown."""
 
-    def _newest(self, frame: Frame) -> Frame:
-        """The newest frame of the run of a frame."""
-        newest = self.state.newest
-        if newest is None or newest.run.number != frame.run.number:
-            return frame
-        return newest
-
     def _plot(
         self,
         name: str,

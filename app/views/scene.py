@@ -232,9 +232,7 @@ class Scene(View):
 
         They are those of its reference; of a run without one, those of its last frame.
         """
-        newest = self.state.newest
-        if newest is None or newest.run.number != frame.run.number:
-            newest = frame
+        newest = self._newest(frame)
         if newest.run.reference_moved is not None:
             return newest.run.reference_moved
         if newest.status is not None:

@@ -143,6 +143,13 @@ class View:
         with pn.io.hold():
             self._redraw()
 
+    def _newest(self, frame: Frame) -> Frame:
+        """The newest frame of the run of a frame."""
+        newest = self.state.newest
+        if newest is None or newest.run.number != frame.run.number:
+            return frame
+        return newest
+
     def _show_again(self) -> None:
         """Update the view from the last frame again, if there is one."""
         if self._shown is not None:
