@@ -18,6 +18,7 @@ from app.frame import Frame
 from app.views.colors import FLAG, PAPER
 from app.views.type_size import LETTER, ROW
 from app.views.view import HEIGHT, WIDTH, View
+from app.views.words import LEFT_OF
 from solver.arrays import Array
 from solver.study.trade_case import PlotFlag
 
@@ -30,8 +31,6 @@ STEP = 4.0
 LONGEST = 2000.0
 """Length of a straight piece of a curve from which on its points are farther apart,
 px."""
-LEFT_OF = {"left": 0.0, "center": 0.5, "right": 1.0}
-"""Share of a name at the left of its anchor, by its alignment."""
 
 
 class Place(NamedTuple):
