@@ -135,6 +135,11 @@ def case_from_file(path: Path) -> Case:
             entries = {"picture": settings.icon._asdict(), **entries}
             tables = dict.fromkeys(("picture", "flag", "surroundings"), dict)
             fields = fields_in(Case, entries, quantity=str, **tables)
+            known = fields["known"]
+            is_divisor = math.isfinite(known) and known != 0.0
+            can = "a finite number other than zero"
+            remedy = "deviations are shares of it"
+            require(is_divisor, "known", known, can, remedy)
             tolerance = fields["tolerance"]
             is_share = 0.0 < tolerance < 1.0
             can = "a share above 0 and below 1"
