@@ -22,8 +22,6 @@ from solver.settings.scene import Settings
 
 Floats = NDArray[np.float32]
 Bytes = NDArray[np.int8]
-OPEN = 2
-"""Status of a point without contact; -1 is slip backward, 0 stick, +1 slip forward."""
 LOCAL = "local"
 LINEAR = "linear"
 """Stages of an iteration: laws of interfaces, then elasticity and balance."""
@@ -122,6 +120,7 @@ class Run:
     interfaces: Mapping[str, FrictionInterface]
     """All interfaces with friction, by name."""
     geometry: Geometry
+    n_substructures: int
     across: tuple[str, str]
     up: tuple[str, str]
     """Title and SI unit of the loop's displacement and force."""

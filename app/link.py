@@ -243,8 +243,9 @@ def read(query: str, present: Settings | None = None) -> tuple[Shown, str]:
     shown |= _checked(pairs, refused)
     if "interface" in pairs:
         shown["interface"] = pairs.pop("interface")
-    base = _with_file(base, pairs, present, refused)
-    shown["settings"] = _together(base, _typed(base, pairs, refused), refused)
+    values = _of_present(base, pairs, present, refused)
+    values |= _typed(base, pairs, refused)
+    shown["settings"] = _together(base, values, refused)
     shown["question"] = question
     # Beside another tab the question may be that of a scene before.
     if shown.get("tab") == WHAT_IF:
@@ -299,17 +300,18 @@ def _checked(pairs: dict[str, str], refused: list[str]) -> Shown:
     return allowed
 
 
-def _with_file(
+def _of_present(
     base: Settings, pairs: dict[str, str], present: Settings | None, refused: list[str]
-) -> Settings:
-    """Settings, with present values of those that are too long for an address."""
+) -> dict[str, Any]:
+    """Present values of the settings that are too long for an address."""
+    values = {}
     for name in pairs.pop("file", "").split(","):
         is_there = present is not None and present.scene == base.scene
         if is_there and name in base.definitions():
-            base = base.replace(**{name: getattr(present, name)})
+            values[name] = getattr(present, name)
         elif name:
             refused.append(f"{name[:40]} is too long for it: open its file")
-    return base
+    return values
 
 
 def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str, str]]:

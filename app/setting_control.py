@@ -21,6 +21,7 @@ from solver.settings.definitions import (
     TextParameter,
     help_of,
     is_logarithmic,
+    names_of,
     properties_of,
     title_of,
 )
@@ -84,18 +85,19 @@ class SettingControl:
             "width": WIDTH,
             "margin": (4, 0),
         }
-        if isinstance(definition, CurveParameter):
-            options = [*definition.presets, POINTS]
-            field = pmui.Select(options=options, variant="standard", **more)
-            return field, [pn.Column(field, margin=0)]
         if isinstance(definition, param.Boolean):
             field = pmui.Switch(**more)
             return field, [field]
-        if isinstance(definition, TextParameter):
-            return self._make_text(definition, more)
-        if isinstance(definition, param.Selector):
-            options = list(definition.objects)
+        if isinstance(definition, TextParameter) and not definition.is_file:
+            field = pmui.TextInput(variant="standard", **more)
+            return field, [field]
+        names = names_of(definition)
+        if isinstance(definition, CurveParameter):
+            options = [*names, POINTS]
             field = pmui.Select(options=options, variant="standard", **more)
+            return field, [pn.Column(field, margin=0)]
+        if names:
+            field = pmui.Select(options=names, variant="standard", **more)
             return field, [field]
         # All others are numbers: a field to type in, and below it a slider.
         more |= {"margin": (3, 0, 0, 0), "variant": "standard", **looks("number")}
@@ -104,17 +106,6 @@ class SettingControl:
         self._is_logarithmic = is_logarithmic(definition)
         self.slider = self._make_slider()
         return field, [field, self.slider]
-
-    def _make_text(
-        self, definition: TextParameter, more: dict[str, Any]
-    ) -> tuple[Any, list[Any]]:
-        """Make the field of a text: presets and an open file, or text input."""
-        if not definition.is_file:
-            field = pmui.TextInput(variant="standard", **more)
-            return field, [field]
-        options = list(definition.presets)
-        field = pmui.Select(options=options, variant="standard", **more)
-        return field, [field]
 
     def _make_slider(self) -> pmui.FloatSlider:
         lowest, highest = self._definition.softbounds
@@ -171,7 +162,7 @@ class SettingControl:
             if self._dialog is not None:
                 self._dialog.update()
         elif isinstance(self._definition, TextParameter) and self._definition.is_file:
-            presets = list(self._definition.presets)
+            presets = names_of(self._definition)
             # A file is there to be chosen only while it is open.
             if value not in presets:
                 presets.append(OWN)

@@ -144,7 +144,7 @@ def iterations(count: int) -> str:
 def _details(frame: Frame) -> list[str]:
     """Sentences on the method and the end of the run, and key figures over time."""
     settings = frame.run.settings
-    parts = settings.n_substructures
+    parts = frame.run.n_substructures
     decomposition = "one substructure"
     if parts > 1:
         kind = "multiscale" if settings.multiscale else "monoscale"

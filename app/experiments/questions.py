@@ -17,10 +17,9 @@ from app.state import SEARCH, answer
 from app.worker.references import has_reference
 from solver.refusal import RefusedError
 from solver.settings.definitions import (
-    CurveParameter,
     Parameter,
-    TextParameter,
     is_logarithmic,
+    names_of,
     properties_of,
 )
 from solver.settings.scene import Settings
@@ -150,17 +149,6 @@ def can_be_read(quantity: Quantity, settings: Settings) -> bool:
     if quantity.reads == "errors" and not has_reference(settings):
         return False
     return quantity.applies(settings)
-
-
-def names_of(definition: Parameter) -> list[str]:
-    """Names of the values of a setting; empty if they are numbers."""
-    if isinstance(definition, param.Boolean):
-        return ["false", "true"]
-    if isinstance(definition, CurveParameter | TextParameter):
-        return list(definition.presets)
-    if isinstance(definition, param.Selector):
-        return list(definition.objects)
-    return []
 
 
 def proposed(settings: Settings, name: str) -> str:

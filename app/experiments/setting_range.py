@@ -10,10 +10,10 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 
-from app.experiments.questions import names_of, proposed, variable
+from app.experiments.questions import proposed, variable
 from solver.files.amounts import unit_of
 from solver.files.typed import typed_amount
-from solver.settings.definitions import properties_of, title_of
+from solver.settings.definitions import names_of, properties_of, title_of
 from solver.settings.scene import Settings
 
 FIELD: dict[str, Any] = {"size": "small", "margin": (5, 6)}

@@ -13,7 +13,7 @@ import pandas as pd
 import panel_material_ui as pmui
 
 from app.files.offline_page import offline_page
-from app.frame import OPEN, Frame
+from app.frame import Frame
 from app.state import PageState
 from app.views.scene import Scene
 from app.views.status_map import StatusMap
@@ -21,6 +21,7 @@ from app.views.timeline import Timeline, given_in
 from app.views.view import View
 from app.widgets import download, up_to
 from app.worker.references import has_reference
+from solver.laws import OPEN
 from solver.settings.scene import Settings
 from solver.study.comparison import PER
 

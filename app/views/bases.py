@@ -57,7 +57,7 @@ class Spectra(ExtraView):
         self._bar = color_bar(plot, self._colors, ticker=ticker)
 
     def _show(self, spectra: Any, frame: Frame, selection: Selection) -> None:
-        count = frame.run.settings.n_substructures
+        count = frame.run.n_substructures
         ys = [values[values > 0.1 * SMALLEST] for values in spectra]
         modes = np.arange(1.0, MOST_VALUES + 1.0, dtype=np.float32)
         lengths = [len(values) for values in ys]

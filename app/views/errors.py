@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import panel as pn
 from bokeh.core.properties import value
 from bokeh.events import Tap
 from bokeh.models import FixedTicker, PrintfTickFormatter
@@ -56,13 +55,6 @@ CURVES = {
 
 class ErrorPlot(View):
     """A plot over all iterations so far, also while an earlier iterate is shown."""
-
-    def _newest(self, frame: Frame) -> Frame:
-        """The newest frame of the run of a frame."""
-        newest = self.state.newest
-        if newest is None or newest.run.number != frame.run.number:
-            return frame
-        return newest
 
     def _plot(
         self,
@@ -126,8 +118,8 @@ class Convergence(ErrorPlot):
         self.show("stage", False, may_come_back=False)
         hover(plot, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
         plot.on_event(Tap, self._go_back)
-        self._shown: tuple[Frame, Selection, Frame | None] | None = None
-        self.follow_size(WIDTH, HEIGHT)
+        # Names stand at distances in px.
+        self.follow_size(WIDTH, HEIGHT, self._show_again)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show errors and indicators of all iterations so far."""
@@ -290,13 +282,6 @@ class Convergence(ErrorPlot):
     def words(self) -> str:
         """Type size of the names of curves, as CSS has it: that of the axes."""
         return f"{self.type_size:g}px"
-
-    def _resize(self, name: str, old: float, new: float) -> None:
-        super()._resize(name, old, new)
-        # Names stand at distances in px.
-        if self._shown is not None:
-            with pn.io.hold():
-                self.update(*self._shown)
 
     def _go_back(self, event: Any) -> None:
         """Show the iterate nearest to a tap."""

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-import panel as pn
 from bokeh.models import Line, MultiLine, Range1d, VBar
 from bokeh.plotting import figure
 
@@ -19,6 +18,7 @@ from app.frame import Frame
 from app.views.colors import FLAG, PAPER
 from app.views.type_size import LETTER, ROW
 from app.views.view import HEIGHT, WIDTH, View
+from app.views.words import LEFT_OF
 from solver.arrays import Array
 from solver.study.trade_case import PlotFlag
 
@@ -31,8 +31,6 @@ STEP = 4.0
 LONGEST = 2000.0
 """Length of a straight piece of a curve from which on its points are farther apart,
 px."""
-LEFT_OF = {"left": 0.0, "center": 0.5, "right": 1.0}
-"""Share of a name at the left of its anchor, by its alignment."""
 
 
 class Place(NamedTuple):
@@ -72,17 +70,13 @@ class CaseFlag:
             # What it lies on, where no place is free, is to be read through.
             background_fill_alpha=0.75,
         )
-        view.follow_size(WIDTH, HEIGHT)
-        # After the view, which takes the new size first.
-        for name in ("inner_width", "inner_height"):
-            plot.on_change(name, self._move)
+        view.follow_size(WIDTH, HEIGHT, self._place_again)
 
-    def _move(self, name: str, old: Any, new: Any) -> None:
+    def _place_again(self) -> None:
         """Place the name again, in a figure of another size."""
         # Before it was shown the axes have no limits.
         if self._shown is not None:
-            with pn.io.hold():
-                self.show(self._shown)
+            self.show(self._shown)
 
     def show(self, frame: Frame) -> None:
         """Show the flag if the number is known for a frame, and stands in this plot."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from app.frame import Geometry
 from app.views.axis import rounded_up
+from app.views.type_size import LETTER, ROW
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act, Description
 from solver.study.trade_case import Surroundings
@@ -23,8 +24,6 @@ BAND = 7.0
 """Thickness of the band of an interface, px."""
 COLUMN = 20.0
 """Width of the column of keys, letters."""
-LETTER = 0.56
-"""Width of a letter over its type size, about."""
 LONG = 5.0
 """Least length over height of long bodies."""
 HIGH = 3.0
@@ -42,8 +41,6 @@ FARTHEST = 2.0
 its run."""
 GROUND = 26.0
 """Depth of the ground of a case, px."""
-ROW = 1.3
-"""Height of a line of words over its type size."""
 FOOTING = 18.0
 """Depth of the hatching of a footing, px."""
 BESIDE = "left", "right"

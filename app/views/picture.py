@@ -9,13 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from app.frame import OPEN, Bytes, Frame, Geometry
+from app.frame import Bytes, Frame, Geometry
 from app.views.acts import Arrows, Rest, color_of
 from app.views.colors import EDGE, ERROR, HALO, STATUS
 from app.views.layout import BAND, GROUND, IMAGE, Layout, turned
 from app.views.parts import gapped
 from app.views.supports import footing_strokes, ground_edge, strokes_of
 from solver.arrays import Array
+from solver.laws import OPEN
 
 MECHANISM = 0.12
 """Largest motion of a mechanism as drawn, over the height of all bodies."""

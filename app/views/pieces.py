@@ -7,7 +7,6 @@ import textwrap
 from typing import Any
 
 import numpy as np
-import panel as pn
 from bokeh.core.properties import value
 from bokeh.events import Tap
 
@@ -99,7 +98,7 @@ class PiecesView(ExtraView):
         self._placed: PlacedPieces | None = None
         self._last: tuple[Pieces, Frame, Selection] | None = None
         plot.on_event(Tap, self._tap)
-        self.follow_size(WIDTH, HEIGHT)
+        self.follow_size(WIDTH, HEIGHT, self._show_last)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the pieces of a frame, or nothing if the frame has none."""
@@ -236,11 +235,10 @@ class PiecesView(ExtraView):
             texts.append("micro forces drawn across")
         return ", ".join(texts)
 
-    def _resize(self, name: str, old: float, new: float) -> None:
-        super()._resize(name, old, new)
+    def _show_last(self) -> None:
+        """Show the last pieces again, if there are any."""
         if self._last is not None:
-            with pn.io.hold():
-                self._show(*self._last)
+            self._show(*self._last)
 
     def _tap(self, event: Any) -> None:
         """Select the joint nearest to the pointer, and its piece."""

@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 import numpy as np
-import panel as pn
 from bokeh.events import Pan, PanEnd, PanStart, Tap
 from bokeh.plotting import figure
 
@@ -57,7 +56,6 @@ class Scene(View):
         self._dragged: dict[str, tuple[Arrows, Settings]] = {}
         self._factor: float | None = None
         self._settled: tuple[object, float] | None = None
-        self._shown: tuple[Frame, Selection, Frame | None] | None = None
         self.picture: Picture | None = None
         self._held: tuple[Arrows | Rest, Picture] | None = None
         self._moved_to = 0.0
@@ -65,7 +63,7 @@ class Scene(View):
         plot.on_event(Pan, self._drag)
         plot.on_event(PanEnd, self._let_go)
         plot.on_event(Tap, self._select)
-        self.follow_size(WIDTH, HEIGHT)
+        self.follow_size(WIDTH, HEIGHT, self._show_again)
 
     def _draw(self, plot: figure) -> None:
         """Add all layers from the bottom to the top, and the legend."""
@@ -234,9 +232,7 @@ class Scene(View):
 
         They are those of its reference; of a run without one, those of its last frame.
         """
-        newest = self.state.newest
-        if newest is None or newest.run.number != frame.run.number:
-            newest = frame
+        newest = self._newest(frame)
         if newest.run.reference_moved is not None:
             return newest.run.reference_moved
         if newest.status is not None:
@@ -283,12 +279,6 @@ class Scene(View):
                 if self._held or shortest <= peak / kept <= longest:
                     continue
             self._peaks[act.where] = peak
-
-    def _resize(self, name: str, old: float, new: float) -> None:
-        super()._resize(name, old, new)
-        if self._shown is not None:
-            with pn.io.hold():
-                self.update(*self._shown)
 
     def _hold(self, event: Any) -> None:
         """Begin to drag the arrow whose handle is under the pointer."""

@@ -8,7 +8,6 @@ from itertools import zip_longest
 from typing import Any
 
 import numpy as np
-import panel as pn
 from bokeh.events import Pan, Tap
 from bokeh.models import CustomJS, PanTool
 
@@ -78,7 +77,7 @@ class Timeline(View):
         plot.add_tools(PanTool(dimensions="width"))
         for event in (Pan, Tap):
             plot.on_event(event, self._select)
-        self.follow_size(WIDTH, HEIGHT)
+        self.follow_size(WIDTH, HEIGHT, self._make_room)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the load paths of a run, and the instant."""
@@ -131,11 +130,6 @@ class Timeline(View):
             width += LETTER * self.type_size * len(name) + ENTRY
         lines = max(math.ceil(width / self.room[0]), 1)
         self.figure.y_range.end = HIGH + ANOTHER * (lines - 1)
-
-    def _resize(self, name: str, old: float, new: float) -> None:
-        super()._resize(name, old, new)
-        with pn.io.hold():
-            self._make_room()
 
     def _select(self, event: Any) -> None:
         """Select the instant under the pointer."""

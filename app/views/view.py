@@ -8,6 +8,7 @@ from itertools import zip_longest
 from typing import Any, ClassVar
 
 import numpy as np
+import panel as pn
 from bokeh import models
 from bokeh.core.properties import validate, value
 from bokeh.events import LegendItemClick
@@ -95,6 +96,7 @@ class View:
         self.sources: dict[str, ColumnDataSource] = {}
         self._size: dict[str, float] = {}
         self._items: dict[str, LegendItem] = {}
+        self._shown: tuple[Frame, Selection, Frame | None] | None = None
 
     @cached_property
     def figure(self) -> figure:
@@ -122,9 +124,12 @@ class View:
         """The figure for a card: alone, or laid out with another one."""
         return self.figure
 
-    def follow_size(self, width: float, height: float) -> None:
-        """Follow the size of the figure, px, and begin with a size."""
+    def follow_size(
+        self, width: float, height: float, redraw: Callable[[], None]
+    ) -> None:
+        """Follow the size of the figure, px, from a size on; draw again for another."""
         self.lay_out(width, height)
+        self._redraw = redraw
         for name in self._size:
             self._figure.on_change(name, self._resize)
 
@@ -135,6 +140,20 @@ class View:
     def _resize(self, name: str, old: float, new: float) -> None:
         # A figure that is out of sight reports a size of zero.
         self._size[name] = max(float(new), LEAST)
+        with pn.io.hold():
+            self._redraw()
+
+    def _newest(self, frame: Frame) -> Frame:
+        """The newest frame of the run of a frame."""
+        newest = self.state.newest
+        if newest is None or newest.run.number != frame.run.number:
+            return frame
+        return newest
+
+    def _show_again(self) -> None:
+        """Update the view from the last frame again, if there is one."""
+        if self._shown is not None:
+            self.update(*self._shown)
 
     @property
     def room(self) -> Floats:

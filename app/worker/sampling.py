@@ -107,6 +107,7 @@ class Sampler:
             instants=problem.instants[self.columns],
             interfaces=self._interfaces(),
             geometry=self.drawn.geometry,
+            n_substructures=len(problem.substructures),
             across=self.loop.across,
             up=self.loop.up,
             is_idle=is_unloaded(problem),

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from app.frame import LINEAR, LOCAL, OPEN, Floats
+from app.frame import LINEAR, LOCAL, Floats
 from app.messages import Needs
 from app.worker.cells import floats, thinned
 from app.worker.extras import Sampled
@@ -250,7 +250,7 @@ def _chosen(trail: Trail, iterate: Iterate, law: Contact, needs: Needs) -> int:
         return int(np.abs(law.positions - needs.position).argmin())
     contact = (trail.solution or iterate).contact(needs.interface)
     force = np.abs(contact.tangential_force)
-    slips = np.abs(contact.status) % OPEN == 1
+    slips = np.abs(contact.status) == 1
     # The two pairs of a point on a cut do not move as one before the end.
     slips[np.bincount(law.points, minlength=len(slips)) > 1] = False
     energy = slips * force * np.abs(np.diff(contact.slip, axis=1, prepend=0.0))

@@ -30,6 +30,7 @@ from solver.study.page import NO_CHARTS, renderer
 
 INTERRUPTED = 130
 """Exit code that shells have for a program that is ended by Ctrl-C."""
+SECONDS = "seconds above 0"
 
 
 def add_command(
@@ -77,11 +78,13 @@ def number_in(
     allowed: str,
     unit: str = "",
     *,
+    above: float,
     is_whole: bool = False,
 ) -> Any:
     """Number in an option, in a unit, or None if it is not given.
 
-    It is read as settings are. Where it is to be whole it is an integer.
+    It is read as settings are, and refused if it is not above a limit. Where it is to
+    be whole it is an integer.
     """
     text = getattr(chosen, option)
     if not isinstance(text, str):
@@ -91,11 +94,13 @@ def number_in(
         value = typed_amount(text, Unit(unit), unit)
     except ValueError as flaw:
         raise refuse(str(flaw)) from None
-    if not is_whole:
-        return value
-    if value != int(value):
+    if is_whole and value != int(value):
         raise refuse("write a whole number")
-    return int(value)
+    if not value > above:
+        raise refuse("raise it")
+    if is_whole:
+        return int(value)
+    return value
 
 
 def read_brought(chosen: argparse.Namespace, allowed: str) -> Table:

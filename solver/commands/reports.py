@@ -11,6 +11,7 @@ from typing import Any
 
 from solver.commands.console import (
     INTERRUPTED,
+    SECONDS,
     add_command,
     given,
     names_in,
@@ -23,7 +24,6 @@ from solver.commands.console import (
 )
 from solver.files.disk import write
 from solver.files.saved import scene_settings, settings_from_command
-from solver.settings.values import SettingError
 from solver.study import proof
 from solver.study import stability_report as stability
 from solver.study import study_report as study
@@ -45,6 +45,7 @@ TABLE = "sweep.csv"
 PAGE = "sweep.html"
 LIMIT = 600.0
 """Time limit of a run without `--limit`, s."""
+FROM_1 = "a whole number from 1"
 OFTEN = 3.0
 """Time between two lines of progress, s."""
 
@@ -125,10 +126,7 @@ def _figures(chosen: argparse.Namespace) -> int:
 
 def _study(chosen: argparse.Namespace) -> int:
     """Measure error over run time of all methods, and run time over size."""
-    can = "a whole number from 1"
-    repeats: int = number_in(chosen, "repeats", can, is_whole=True)
-    if repeats < 1:
-        raise SettingError("--repeats", repeats, can, "give 1 or more")
+    repeats: int = number_in(chosen, "repeats", FROM_1, above=0, is_whole=True)
     settings, _ = given(chosen)
     with writing(chosen.out):
         # Curves are written at once: sizes take longer, and may be interrupted.
@@ -149,11 +147,11 @@ def _study(chosen: argparse.Namespace) -> int:
 def _stability(chosen: argparse.Namespace) -> int:
     """Run stiff and extreme cases, or random ones, and judge each."""
     scenes = [scene_settings(scene).scene for scene in chosen.scenes]
-    count = _whole(chosen, "random", 1)
-    seed = _whole(chosen, "seed", 0)
+    count = number_in(chosen, "random", FROM_1, above=0, is_whole=True)
+    seed = number_in(chosen, "seed", "a whole number from 0", above=-1, is_whole=True)
     cases = extreme_cases(scenes, quick=chosen.quick)
     if count is not None:
-        cases = random_cases(scenes, count, seed or 0)
+        cases = random_cases(scenes, count, seed)
     runs: list[Row] = []
     with writing(chosen.out, *stability.FILES):
         print(head_of(stability.SHOWN))
@@ -166,15 +164,6 @@ def _stability(chosen: argparse.Namespace) -> int:
             print("\n".join(stability.last_lines(runs)))
             print(f"{len(stability.FILES)} files in {chosen.out}")
     return 0 if all(map(passed, runs)) else 1
-
-
-def _whole(chosen: argparse.Namespace, option: str, minimum: int) -> int | None:
-    """Whole number in an option, from a minimum on; None if it is not given."""
-    can = f"a whole number from {minimum}"
-    value: int | None = number_in(chosen, option, can, is_whole=True)
-    if value is not None and value < minimum:
-        raise SettingError(f"--{option}", value, can, "raise it")
-    return value
 
 
 def _proof(chosen: argparse.Namespace) -> int:
@@ -200,9 +189,7 @@ def _sweep(chosen: argparse.Namespace) -> int:
     # Without a range the sweep is a single run, in one row.
     vary = chosen.vary or [f"friction={settings.friction!r}"]
     plan = plan_of(settings, vary, names_in(chosen.of))
-    limit: float = number_in(chosen, "limit", "seconds above zero", "s")
-    if not limit > 0.0:
-        raise SettingError("--limit", limit, "seconds above zero", "raise it")
+    limit: float = number_in(chosen, "limit", SECONDS, "s", above=0.0)
     print_tables(tables)
     for name in plan.idle():
         warn(f"{name} does nothing with the other settings as they are")

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from solver.commands.console import (
+    SECONDS,
     add_command,
     announce,
     given,
@@ -40,7 +41,6 @@ from solver.study.quantities.quantity import NEVER, Quantity
 
 RESULTS = ".npz", PARAVIEW
 """Ends of the names of result files."""
-LIMITS = "seconds above 0"
 CAN_BE_WRITTEN = "a file in an existing folder that can be written"
 OF_WHOLE_RUN = ("slipped_share", "dissipation")
 """Quantities of the whole run, which are printed beside the key figures of the loop."""
@@ -89,8 +89,11 @@ def add_run(commands: Any) -> None:
 
 def _run(chosen: argparse.Namespace) -> int:
     """Run a scene to its stop rule; print its key figures, and write its result."""
-    limit = _limit(chosen)
-    slab = number_in(chosen, "slab", "a number of instants from 1", is_whole=True)
+    limit = number_in(chosen, "limit", SECONDS, "s", above=0.0)
+    if limit is None:
+        limit = math.inf
+    can = "a number of instants from 1"
+    slab = number_in(chosen, "slab", can, above=0, is_whole=True)
     asked = [reading(name) for name in names_in(chosen.of) if name]
     if chosen.out is not None:
         _check_result_file(chosen.out)
@@ -130,16 +133,6 @@ def _check_result_file(out: Path) -> None:
         )
     with refusing(out, CAN_BE_WRITTEN):
         check_place(out)
-
-
-def _limit(chosen: argparse.Namespace) -> float:
-    """Time limit of a run, s; infinite without one."""
-    limit: float | None = number_in(chosen, "limit", LIMITS, "s")
-    if limit is None:
-        return math.inf
-    if not limit > 0.0:
-        raise SettingError("--limit", limit, LIMITS, "give more, or leave it out")
-    return limit
 
 
 def _solved(

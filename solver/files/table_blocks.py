@@ -168,13 +168,13 @@ def _is_first(line: Line, between: Sequence[Line]) -> bool:
     return line.n_numbers > 1 and (is_below_head or not line.are_words[0])
 
 
-def _is_next(line: Line, block: Block | None, separator: str) -> bool:
+def _is_next(line: Line, block: Block, separator: str) -> bool:
     """Check whether a line may be a further row.
 
     A line that begins with a word is a row if the first row does, or if cells are
     divided by a sign, and there are as many as in the first row.
     """
-    if block is None or not line.n_numbers:
+    if not line.n_numbers:
         return not line.has_words
     first = block.rows[0]
     if not line.are_words[0] or first.are_words[0]:

@@ -91,7 +91,7 @@ def shakedown_limit(problem: Problem, cycle: slice) -> float:
         Where bounds depend on the pressing force or on slip, or there are too many
         points.
     """
-    if problem.opens or _count(problem) > MOST_KNOWN:
+    if problem.opens or problem.contacts.n_points > MOST_KNOWN:
         raise NoReferenceError(
             f"The limit is that of known bounds, and of at most {MOST_KNOWN} points."
         )
@@ -151,11 +151,6 @@ def _forces_of_slips(
     elastic = gives.T @ elastic - residual @ condensed.shift[:, cycle]
     # The force of a spring in series is determinate.
     return residual, elastic, np.zeros((len(rules.compliance), 0))
-
-
-def _count(problem: Problem) -> int:
-    """Number of points that rub."""
-    return problem.contacts.n_points
 
 
 def _limit_of_points(elastic: Array, bound: Array) -> float:
@@ -243,7 +238,7 @@ def slip_space(problem: Problem) -> SlipSpace:
         Where contacts are compliant, friction changes with slip, nothing
         rubs, forces do not follow from jumps, or there are too many points.
     """
-    if _count(problem) > MOST_POINTS:
+    if problem.contacts.n_points > MOST_POINTS:
         raise NoReferenceError(f"The planes are those of at most {MOST_POINTS} points.")
     condensed = Condensation(problem)
     if not _is_of_coulomb(condensed):

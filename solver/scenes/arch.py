@@ -18,7 +18,7 @@ from solver.discrete.problem import Problem
 from solver.discrete.structure import Act
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.arch import VoussoirArch
-from solver.scenes.plane import PlaneSettings, RectangleSettings
+from solver.scenes.plane import RectangleSettings, ShapedSettings
 from solver.settings.definitions import BODY, LOAD, redefined
 from solver.settings.load_paths import HELD, PRESETS, Preset
 from solver.settings.scene import Icon
@@ -47,7 +47,7 @@ MOVES: dict[str, Preset] = {**PRESETS, "later": LATER}
 """Paths of an abutment over time."""
 
 
-class ArchSettings(PlaneSettings):
+class ArchSettings(ShapedSettings):
     """Settings of the arch; by default an abutment moves outwards, then inwards."""
 
     scene = "arch"
@@ -64,7 +64,6 @@ class ArchSettings(PlaneSettings):
     ALSO_CHIEF = ("centres", "friction", "voussoirs", "multiscale")
     GROWS = ("voussoirs",)
     SMALL: ClassVar = {"voussoirs": 7, "elements": 2, "instants": 13}
-    has_joints = True
 
     abutment = LOAD.choice(
         "apart",
@@ -172,14 +171,10 @@ class ArchSettings(PlaneSettings):
         "Thickness of the ring over its mean radius.",
         title="Thickness over radius t/R",
     )
-    friction = redefined(PlaneSettings.param["friction"], 0.6)
-    friction_profile = redefined(
-        PlaneSettings.param["friction_profile"], "uniform", applies=lambda _: False
-    )
-    plane = redefined(PlaneSettings.param["plane"], "stress")
-    young = redefined(PlaneSettings.param["young"], 1e10)
-    poisson = redefined(PlaneSettings.param["poisson"], 0.2)
-    instants = redefined(PlaneSettings.param["instants"], 41)
+    friction = redefined(ShapedSettings.param["friction"], 0.6)
+    plane = redefined(ShapedSettings.param["plane"], "stress")
+    young = redefined(ShapedSettings.param["young"], 1e10)
+    poisson = redefined(ShapedSettings.param["poisson"], 0.2)
     elements = redefined(
         RectangleSettings.param["elements"],
         2,
@@ -188,13 +183,11 @@ class ArchSettings(PlaneSettings):
         title="Elements across",
     )
     substructures = redefined(
-        RectangleSettings.param["substructures"],
+        ShapedSettings.param["substructures"],
         1,
         doc="Number of pieces (substructures) of each stone.",
         title="Substructures of a stone",
     )
-    macro_degree = redefined(RectangleSettings.param["macro_degree"], 1)
-    start = redefined(RectangleSettings.param["start"], "zero")
 
     @property
     def has_live(self) -> bool:
@@ -242,7 +235,6 @@ class ArchSettings(PlaneSettings):
             loads += ring.loads(FILL, self._filled)
         if self.has_live:
             loads += ring.loads(LIVE, self._passing)
-        weight = np.stack([np.zeros_like(self._hold), -self.unit_weight * self._hold])
         path = self.path("abutment_load")
         settles = self.abutment == "down"
         moved = np.zeros((2, len(path)))
@@ -251,7 +243,12 @@ class ArchSettings(PlaneSettings):
         else:
             moved[0] = path
         return Arch(
-            bodies=ring.bodies(self.young, self.poisson, weight, self.substructures),
+            bodies=ring.bodies(
+                self.young,
+                self.poisson,
+                self.weight(self.unit_weight),
+                self.substructures,
+            ),
             joints=ring.joints(self.friction),
             held=ring.abutments(moved),
             loads=loads,
@@ -264,16 +261,11 @@ class ArchSettings(PlaneSettings):
             above=tuple(self._above()),
         )
 
-    @cached_property
-    def _hold(self) -> Array:
-        """Factor on the weights over time, (n_instants,)."""
-        return PRESETS["hold"].value(self.times() / self.duration, 1)
-
     @property
     def _filled(self) -> Array:
         """Weight of the fill on the back, (voussoirs, n_nodes, n_instants), N."""
         columns = self.ring.under_fill(self.ring.crown + self.cover)
-        return np.multiply.outer(self.fill * columns, self._hold)
+        return np.multiply.outer(self.fill * columns, self.hold)
 
     @property
     def _passing(self) -> Array:
@@ -288,7 +280,7 @@ class ArchSettings(PlaneSettings):
             backs = ring.backs.reshape(-1, 2)
             shown = np.linspace(0, len(backs) - 1, SHOWN).round().astype(np.intp)
             heights = ring.crown + self.cover - backs[shown, 1]
-            pressures = np.multiply.outer(self.fill * heights, self._hold)
+            pressures = np.multiply.outer(self.fill * heights, self.hold)
             yield Act("top fill", "p", backs[shown], DOWN, pressures, "Pa")
         if self.has_live:
             backs = ring.backs.reshape(-1, 2)
@@ -309,7 +301,7 @@ class ArchSettings(PlaneSettings):
             return
         moved = self.path("abutment_load")
         strain = self.unit_weight * self.length / self.young
-        is_apart = (self._hold == 1.0) & (moved >= HINGED * strain * self.length)
+        is_apart = (self.hold == 1.0) & (moved >= HINGED * strain * self.length)
         if is_apart.any():
             across = np.where(is_apart, moved, moved[is_apart.argmax()])
             thrust = least * float(self.structure().downwards[-1])
@@ -349,9 +341,6 @@ class ArchSettings(PlaneSettings):
             kind = "A round arch"
         if self.centres:
             kind = "A pointed arch"
-        touch = "slide freely on"
-        if self.is_rough:
-            touch = "rub on"
         filled = ""
         if self.fill:
             filled = ", filled above,"
@@ -367,7 +356,8 @@ class ArchSettings(PlaneSettings):
                 words = "lowered", "raised", "lowered and raised"
             done = shared.acting(path, *words)
             parts.append(f"its right abutment is {done}")
+        stones = f"{self.voussoirs} stones that only touch{filled}"
         return (
-            f"{kind} of {self.voussoirs} stones that only touch{filled} and {touch} "
-            f"each other stands on two abutments; {shared.listed(parts)}."
+            f"{kind} of {stones} and {self.touch} each other stands on two abutments; "
+            f"{shared.listed(parts)}."
         )

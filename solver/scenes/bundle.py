@@ -20,9 +20,8 @@ from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
 from solver.refusal import plain
 from solver.scenes.exact import hertz, is_coupled
-from solver.scenes.plane import PlaneSettings, RectangleSettings
+from solver.scenes.plane import RectangleSettings, ShapedSettings
 from solver.settings.definitions import BODY, LOAD, redefined
-from solver.settings.load_paths import PRESETS
 from solver.settings.scene import Icon
 
 WIDER = 1.6
@@ -36,7 +35,7 @@ NODES = 15
 """Number of nodes of a mesh about a contact, over its elements, nearly."""
 
 
-class BundleSettings(PlaneSettings):
+class BundleSettings(ShapedSettings):
     """Settings of the bundle; by default wires are pressed and moved to and fro."""
 
     scene = "bundle"
@@ -55,7 +54,6 @@ class BundleSettings(PlaneSettings):
     GROWS = ("rings",)
     PARTS: ClassVar = {}
     SMALL: ClassVar = {"rings": 1, "elements": 2, "instants": 13}
-    has_joints = True
 
     arrangement = BODY.choice(
         "hexagon",
@@ -107,7 +105,9 @@ class BundleSettings(PlaneSettings):
         "Force towards the middle by which a band presses each outer wire between the "
         "lowest and the highest row, over the force of the plate on one wire.",
         title="Force of the band",
-        applies=lambda settings: settings.arrangement == "hexagon",
+        applies=lambda settings: (
+            settings.arrangement == "hexagon" and settings.has_plate
+        ),
     )
     unit_weight = LOAD.quantity(
         0.0,
@@ -117,12 +117,8 @@ class BundleSettings(PlaneSettings):
         unit="N/m^3",
         places=("body",),
     )
-    friction = redefined(PlaneSettings.param["friction"], 0.3)
-    friction_profile = redefined(
-        PlaneSettings.param["friction_profile"], "uniform", applies=lambda _: False
-    )
-    young = redefined(PlaneSettings.param["young"], 2e11)
-    instants = redefined(PlaneSettings.param["instants"], 41)
+    friction = redefined(ShapedSettings.param["friction"], 0.3)
+    young = redefined(ShapedSettings.param["young"], 2e11)
     elements = redefined(
         RectangleSettings.param["elements"],
         8,
@@ -132,10 +128,8 @@ class BundleSettings(PlaneSettings):
         title="Elements across a contact",
     )
     substructures = redefined(
-        RectangleSettings.param["substructures"], 1, applies=lambda _: False
+        ShapedSettings.param["substructures"], 1, applies=lambda _: False
     )
-    macro_degree = redefined(RectangleSettings.param["macro_degree"], 1)
-    start = redefined(RectangleSettings.param["start"], "zero")
 
     @property
     def has_plate(self) -> bool:
@@ -236,9 +230,9 @@ class BundleSettings(PlaneSettings):
     @cached_property
     def bodies(self) -> Bodies:
         """The wires and the plate; one metre long."""
-        hold = PRESETS["hold"].value(self.times() / self.duration, 1)
-        weight = np.stack([np.zeros_like(hold), -self.unit_weight * hold])
-        bodies = self.wires.bodies(self.young, self.poisson, weight)
+        bodies = self.wires.bodies(
+            self.young, self.poisson, self.weight(self.unit_weight)
+        )
         loads = []
         if self._band:
             loads = list(self.wires.band(bodies, self._band * self._pressed))
@@ -285,9 +279,6 @@ class BundleSettings(PlaneSettings):
 
     def sentence(self) -> str:
         """Describe the bundle in a sentence."""
-        touch = "slide freely on each other"
-        if self.is_rough:
-            touch = "rub on each other"
         lie = "in a heap on the ground"
         if self.arrangement == "hexagon":
             lie = "side by side on the ground"
@@ -304,4 +295,5 @@ class BundleSettings(PlaneSettings):
             # A heap of a single row.
             done = done.replace("them", "it")
             return f"One round wire lies on the ground{done}."
-        return f"{self.n_wires} round wires lie {lie}, and {touch}{done}."
+        wires = f"{self.n_wires} round wires lie {lie}"
+        return f"{wires}, and {self.touch} each other{done}."

@@ -159,13 +159,11 @@ class InclineSettings(RectangleSettings):
 
     def sentence(self) -> str:
         """Describe the block on its slope in a sentence."""
-        moves = shared.acting(
-            self.path("slope_load"),
-            "rises",
-            "falls",
-            both="rises and falls",
-            back="rises and falls",
-        )
+        path = self.path("slope_load")
+        moves = "stays level"
+        if np.any(path):
+            turns = "rises and falls"
+            moves = shared.acting(path, "rises", "falls", both=turns, back=turns)
         rough = "rough" if self.is_rough else "smooth"
         return (
             f"A block lies on a {rough} slope that {moves}; a spring catches it when "

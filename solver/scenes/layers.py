@@ -14,7 +14,6 @@ from solver.arrays import Array
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.plane.rectangles.sides import Side, SideComponent
 from solver.discrete.plane.rectangles.stack import Stack
-from solver.discrete.plane.rectangles.stack_bodies import ends_along
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.reference.closed_forms import ExactCurve
@@ -179,13 +178,6 @@ class LayersSettings(RectangleSettings):
         return sum(span + 1 for span in self.spans) * self.nodes[1]
 
     @property
-    def n_substructures(self) -> int:
-        """Number of substructures in all."""
-        ends = ends_along(self.elements, self.substructures, self.spans)
-        columns = sum(int(np.count_nonzero(ends <= span)) for span in self.spans)
-        return columns * int(self.substructures_up)
-
-    @property
     def loop_is_over_displacement(self) -> bool:
         """Check whether the loop is a force over a displacement, not a moment."""
         return bool(self.bending != "moment")
@@ -265,8 +257,10 @@ class LayersSettings(RectangleSettings):
         if self.layer_lengths != "equal":
             layers = f"{layers} of different lengths"
         pressed = "lie on each other"
-        if self.pressure:
-            pressed = "are pressed together and rub"
+        if np.any(self.path("pressure_load")):
+            pressed = "are pressed together and slide freely"
+            if self.is_rough:
+                pressed = "are pressed together and rub"
         bent = self.path("bend_load")
         pull = self.path("pull_load")
         ends = shared.acting(bent, "bent up", "bent down", "bent up and down")

@@ -20,7 +20,7 @@ from solver.discrete.problem import Problem
 from solver.refusal import RefusedError, Words
 from solver.scenes.mesh_files import from_text, read_example
 from solver.scenes.named_sides import ALLOWED, MeshSides, conditions_of, split_phrase
-from solver.scenes.plane import PlaneSettings, RectangleSettings
+from solver.scenes.plane import ShapedSettings
 from solver.settings.definitions import BODY, LOAD, Rows, TablePreset, redefined
 from solver.settings.load_paths import PRESETS, PRESSURES
 from solver.settings.scene import Icon
@@ -52,7 +52,7 @@ def _same_for_all(settings: MeshSettings) -> Rows:
     return tuple((number, *row) for number in range(1, settings.n_bodies + 1))
 
 
-class MeshSettings(PlaneSettings):
+class MeshSettings(ShapedSettings):
     """Settings of a mesh; by default plates that a bolt presses together."""
 
     scene = "mesh"
@@ -70,7 +70,6 @@ class MeshSettings(PlaneSettings):
     PARTS: ClassVar = {}
     SMALL: ClassVar = {"instants": 9}
     across = "length"
-    has_joints = True
 
     mesh = BODY.text(
         "bolted",
@@ -161,28 +160,16 @@ class MeshSettings(PlaneSettings):
         title="Materials",
     )
     friction_factors = shared.friction_factors("of the mesh, in its order")
-    friction_profile = redefined(
-        PlaneSettings.param["friction_profile"], "uniform", applies=lambda _: False
-    )
     young = redefined(
-        PlaneSettings.param["young"],
+        ShapedSettings.param["young"],
         210e9,
         applies=lambda settings: settings.materials == "same",
     )
     poisson = redefined(
-        PlaneSettings.param["poisson"],
+        ShapedSettings.param["poisson"],
         0.3,
         applies=lambda settings: settings.materials == "same",
     )
-    instants = redefined(PlaneSettings.param["instants"], 41)
-    substructures = redefined(
-        RectangleSettings.param["substructures"],
-        1,
-        doc="Number of pieces (substructures) of each body.",
-        title="Substructures of a body",
-    )
-    macro_degree = redefined(RectangleSettings.param["macro_degree"], 1)
-    start = redefined(RectangleSettings.param["start"], "zero")
 
     @cached_property
     def parts(self) -> NamedMesh:
@@ -358,7 +345,6 @@ class MeshSettings(PlaneSettings):
 
     def _bodies(self) -> Iterator[Body]:
         """Bodies with their materials."""
-        hold = PRESETS["hold"].value(self.times() / self.duration, 1)
         rows = self.points("materials")
         for name, shape, row in zip(
             self.parts.names, self.parts.shapes, rows, strict=True
@@ -369,7 +355,7 @@ class MeshSettings(PlaneSettings):
                 shape,
                 young,
                 poisson,
-                weight=np.stack([np.zeros_like(hold), -weight * hold]),
+                weight=self.weight(weight),
                 substructures=self.substructures,
             )
 
@@ -389,17 +375,14 @@ class MeshSettings(PlaneSettings):
 
     def sentence(self) -> str:
         """Describe the bodies in a sentence."""
-        touch = "slide freely on each other"
-        if self.is_rough:
-            touch = "rub on each other"
         parts = []
         for line, conditions in self.conditions.items():
             if conditions and conditions != ("free",):
                 said = [re.sub(r" ([xy])$", r" along \1", each) for each in conditions]
                 parts.append(f"“{split_phrase(line)[0]}” {' and '.join(said)}")
-        return (
-            f"{self.n_bodies} bodies of a mesh {touch}; sides: {shared.listed(parts)}."
-        )
+        sides = shared.listed(parts)
+        bodies = f"{self.n_bodies} bodies of a mesh"
+        return f"{bodies} {self.touch} each other; sides: {sides}."
 
 
 def _of_setting(name: str, refusal: RefusedError) -> SettingError:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -24,6 +25,7 @@ from solver.settings.definitions import (
     POSITIVE,
     redefined,
 )
+from solver.settings.load_paths import PRESETS
 from solver.settings.scene import Settings
 
 LARGEST_MATRIX = 30_000_000
@@ -109,6 +111,18 @@ class PlaneSettings(Settings):
         """Check whether there is friction at any pair."""
         return bool(self.friction or self.law.cohesion)
 
+    @cached_property
+    def hold(self) -> Array:
+        """Factor on weights over time, (n_instants,): whole after the first quarter."""
+        return PRESETS["hold"].value(self.times() / self.duration, 1)
+
+    @property
+    def touch(self) -> str:
+        """Words on how bodies touch, before those that they touch."""
+        if self.is_rough:
+            return "rub on"
+        return "slide freely on"
+
     @property
     def n_interfaces(self) -> int:
         """Number of interfaces: between bodies, or of one body with its support."""
@@ -165,7 +179,7 @@ class RectangleSettings(PlaneSettings):
         "What the coarse problem balances on each side of a substructure. 0: "
         "resultants; 1: also moments and linear extension. Sides more than three times "
         "as long as the substructure is deep get more by themselves.",
-        applies=lambda settings: settings.multiscale and settings.n_substructures > 1,
+        applies=lambda settings: settings.multiscale and settings.is_divided,
     )
     start = METHOD.choice(
         "zero",
@@ -197,9 +211,9 @@ class RectangleSettings(PlaneSettings):
         return self.n_bodies * math.prod(self.nodes)
 
     @property
-    def n_substructures(self) -> int:
-        """Number of substructures in all."""
-        return self.n_bodies * self.substructures * self.substructures_up
+    def is_divided(self) -> bool:
+        """Check whether there is more than one substructure."""
+        return super().is_divided or self.substructures_up > 1
 
     def stack(self) -> Stack:
         """Make the bodies, free on all sides and without any load."""
@@ -240,3 +254,26 @@ class RectangleSettings(PlaneSettings):
                 f"parts smaller than {columns} by {rows} elements",
                 "give more substructures along or up, or fewer elements",
             )
+
+
+class ShapedSettings(PlaneSettings):
+    """Settings of bodies of any shape that touch at joints; one metre thick."""
+
+    has_joints = True
+
+    friction_profile = redefined(
+        PlaneSettings.param["friction_profile"], "uniform", applies=lambda _: False
+    )
+    instants = redefined(PlaneSettings.param["instants"], 41)
+    substructures = redefined(
+        RectangleSettings.param["substructures"],
+        1,
+        doc="Number of pieces (substructures) of each body.",
+        title="Substructures of a body",
+    )
+    macro_degree = redefined(RectangleSettings.param["macro_degree"], 1)
+    start = redefined(RectangleSettings.param["start"], "zero")
+
+    def weight(self, density: float) -> Array:
+        """Force per volume by a weight per volume, (2, n_instants), N/m^3."""
+        return np.outer([0.0, -density], self.hold)

@@ -312,8 +312,10 @@ class RopeSettings(Settings):
         tension = ""
         if self.tension_load != "steady":
             tension = "; its tension changes"
-        wires = self.section.wires
-        return f"A strand of {wires} wires, under tension, is {bent} {where}{tension}."
+        strand = f"A strand of {self.section.wires} wires"
+        if np.any(self.path("tension_load")):
+            strand = f"{strand}, under tension,"
+        return f"{strand} is {bent} {where}{tension}."
 
     def bent_strand(self) -> BentStrand | None:
         """Closed form of a strand of uniform curvature under constant tension."""

@@ -112,11 +112,6 @@ class StrandSettings(Settings):
     section = shared.section("Area of the cross section of a wire.", shared.STRAND)
 
     @property
-    def n_substructures(self) -> int:
-        """Number of substructures in all."""
-        return int(self.wires * max(self.substructures, 2 if self.broken else 1))
-
-    @property
     def n_bodies(self) -> int:
         """Number of wires."""
         return int(self.wires)
@@ -184,7 +179,10 @@ class StrandSettings(Settings):
             pulled = f"{pulled} by one grip"
         if self.pressure_load != "steady":
             pulled = f"{pulled}; what presses them together changes"
-        return f"{wires} rub on each other; their right ends are {pulled}."
+        touch = "rub on"
+        if not np.any(self.law.bound_before_slip(self.bodies.strength)):
+            touch = "slide freely on"
+        return f"{wires} {touch} each other; their right ends are {pulled}."
 
     def _break_node(self) -> int:
         """Index of the node at which the wire is broken, inside the wire."""

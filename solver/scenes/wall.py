@@ -259,11 +259,6 @@ class WallSettings(RectangleSettings):
         """Largest position along the contacts, m: the length of the wall."""
         return float(self.bricks * self.length)
 
-    @property
-    def n_substructures(self) -> int:
-        """Number of substructures: each brick is one."""
-        return self.n_bodies
-
     @cached_property
     def _bricks(self) -> list[Brick]:
         """Bricks of the wall, halves and a lintel among them."""
@@ -278,7 +273,7 @@ class WallSettings(RectangleSettings):
     @property
     def _groups(self) -> Indices | None:
         """Group of every brick, (n_bricks,); None where each is a group of its own."""
-        if self.brick_groups >= self.n_substructures:
+        if self.brick_groups >= self.n_bodies:
             return None
         size = self.elements, self.elements_up
         return grouped(self._bricks, size, self.brick_groups)
@@ -286,7 +281,7 @@ class WallSettings(RectangleSettings):
     @property
     def largest_counts(self) -> dict[str, int]:
         """Largest number of each kind of parts: each brick may be a group."""
-        return super().largest_counts | {"brick_groups": self.n_substructures}
+        return super().largest_counts | {"brick_groups": self.n_bodies}
 
     @property
     def n_jumps(self) -> int:
@@ -316,12 +311,11 @@ class WallSettings(RectangleSettings):
                 "at least 2, between bricks of a course",
                 "raise it",
             )
-        if self.n_substructures > MOST_BRICKS:
+        if self.n_bodies > MOST_BRICKS:
             raise self.refusal(
                 "courses",
                 f"a wall of at most {MOST_BRICKS} bricks, of 2 GB",
-                f"these are {self.n_substructures}: take fewer courses, or bricks of a "
-                "course",
+                f"these are {self.n_bodies}: take fewer courses, or bricks of a course",
             )
         if self.cap == "guided" and self.top != "moved":
             raise self.refusal(
@@ -384,8 +378,7 @@ class WallSettings(RectangleSettings):
     def bodies(self) -> Stack:
         """The wall; one metre thick."""
         angle = np.radians(self.path("slope_load"))
-        hold = PRESETS["hold"].value(self.times() / self.duration, 1)
-        weight = self.unit_weight * hold
+        weight = self.unit_weight * self.hold
         driven = SideComponent(self.top == "moved", self.path("top_load"))
         pressed = SideComponent(False, -self.path("pressure_load"), is_pressure=True)
         stack = replace(
@@ -422,22 +415,19 @@ class WallSettings(RectangleSettings):
         pressed = ""
         if np.any(self.path("pressure_load")):
             pressed = ", pressed from above,"
-        if self.n_substructures == 1 and self.cap == "none" and not self._settles:
+        if self.n_bodies == 1 and self.cap == "none" and not self._settles:
             return f"One brick{pressed} stands on {ground}; its top is {driven}."
         bond = "one above the other"
         if self.bond == "running":
             bond = "in running bond"
-        bricks = f"{self.n_substructures} bricks {bond}"
+        bricks = f"{self.n_bodies} bricks {bond}"
         if self.opening:
             bricks = f"{bricks} round an opening"
         if self.cap != "none":
             pressed = f", with a stiff cap{pressed or ','}"
         if self._settles:
             ground = f"{ground}, of which a part settles"
-        touch = "slide freely on"
-        if self.is_rough:
-            touch = "rub on"
         return (
-            f"{bricks}{pressed} only touch, and {touch} each other and {ground}; the "
-            f"top is {driven}."
+            f"{bricks}{pressed} only touch, and {self.touch} each other and "
+            f"{ground}; the top is {driven}."
         )

@@ -166,6 +166,17 @@ def title_of(definition: Parameter) -> str:
     return definition.label or ""
 
 
+def names_of(definition: Parameter) -> list[str]:
+    """Names of the values of a setting; empty if they are numbers."""
+    if isinstance(definition, param.Boolean):
+        return ["false", "true"]
+    if isinstance(definition, CurveParameter | TextParameter):
+        return list(definition.presets)
+    if isinstance(definition, param.Selector):
+        return list(definition.objects)
+    return []
+
+
 def is_logarithmic(definition: Any) -> bool:
     """Check whether a slider is logarithmic: if its range is far more than a decade."""
     low, high = definition.softbounds

@@ -67,7 +67,7 @@ class MethodSettings(param.Parameterized):
         "small coarse problem. Without it, a load travels one substructure an "
         "iteration.",
         title="Multiscale (coarse problem)",
-        applies=lambda settings: settings.n_substructures > 1,
+        applies=lambda settings: settings.is_divided,
     )
     method = METHOD.choice(
         "fast",
@@ -143,7 +143,7 @@ class MethodSettings(param.Parameterized):
         "Equal substructures use the same modes if these miss at most this share of "
         "each one's field. 0: each has modes of its own.",
         title="PGD basis sharing",
-        applies=lambda settings: _on_modes(settings) and settings.n_substructures > 1,
+        applies=lambda settings: _on_modes(settings) and settings.is_divided,
     )
     acceleration = METHOD.choice(
         "anderson",
@@ -212,9 +212,9 @@ class MethodSettings(param.Parameterized):
         return 1
 
     @property
-    def n_substructures(self) -> int:
-        """Number of substructures in all."""
-        return self.n_bodies * self.substructures
+    def is_divided(self) -> bool:
+        """Check whether there is more than one substructure."""
+        return self.n_bodies * self.substructures > 1
 
     @classmethod
     @cache

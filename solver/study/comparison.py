@@ -110,7 +110,9 @@ def results_in(table: Table, settings: Settings, most: float = MOST) -> OtherRes
         during the run; for a displacement of other scenes than a single rod.
     """
     table = table.given_as("the results", CAN)
-    _check_count(table, most)
+    check_count(
+        table, most, "leave some out, or give all of them to the command compare"
+    )
     kind = settings.kind
     quantity, columns = _columns(table)
     if quantity == DISPLACEMENT and kind != "rod":
@@ -123,7 +125,7 @@ def results_in(table: Table, settings: Settings, most: float = MOST) -> OtherRes
         _refuse_nodal_forces(table, column, unit)
     used = {"x": (position, "m"), "t": (time, "s"), quantity: (column, unit)}
     table, names = _with_contacts(table)
-    reading = in_si(table, used, most)
+    reading = in_si(table, used)
     x, t, values = reading.numbers
     _check_places(x, reading.lines, settings.contact_length, table.refuse)
     _check_times(t, settings.duration, table.refuse)
@@ -141,11 +143,12 @@ def results_in(table: Table, settings: Settings, most: float = MOST) -> OtherRes
     )
 
 
-def _check_count(table: Table, most: float) -> None:
+def check_count(
+    table: Table, most: float = MOST, remedy: str = "leave some out"
+) -> None:
     """Refuse more than `most` rows."""
     count = len(table.lines)
     if count > most:
-        remedy = "leave some out, or give all of them to the command compare"
         raise table.refuse(f"it has {count} rows, and may have {most:.0f}: {remedy}")
 
 
@@ -172,19 +175,8 @@ def _refuse_nodal_forces(table: Table, column: TableColumn, unit: str) -> None:
         column.size(unit, lambda remedy: table.refuse(f"{remedy}; {nodal}"))
 
 
-def in_si(
-    table: Table, used: Mapping[str, tuple[TableColumn, str]], most: float = MOST
-) -> Reading:
-    """Read columns, given with their units by name, as numbers in SI.
-
-    Raises
-    ------
-    SettingError
-        For more than `most` rows.
-    """
-    count = len(table.lines)
-    if count > most:
-        raise table.refuse(f"it has {count} rows, and may have {most}: leave some out")
+def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> Reading:
+    """Read columns, given with their units by name, as numbers in SI."""
     columns, units = zip(*used.values(), strict=True)
     return table.read(columns, list(used), units)
 

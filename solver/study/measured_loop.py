@@ -34,7 +34,7 @@ from solver.files.columns import KINDS, TableColumn
 from solver.files.tables import Table
 from solver.files.units import size_in, unit_doubt
 from solver.settings.values import SettingError
-from solver.study.comparison import FEWEST, in_si
+from solver.study.comparison import FEWEST, check_count, in_si
 from solver.study.quantities.cycles import SMALLEST_SWING, turning_points
 
 CAN = (
@@ -161,6 +161,7 @@ def loop_in(table: Table, axes: Axes) -> MeasuredLoop:
         few, with words or infinite numbers in them, or values that are all the same.
     """
     table = table.given_as("the measured loop", CAN)
+    check_count(table)
     time, across, up = columns_of(table, axes)
     (across_title, across_unit), (up_title, up_unit) = axes
     used = {}

@@ -20,8 +20,8 @@ from solver.arrays import Array
 from solver.scenes import CATALOGUE
 from solver.settings.definitions import (
     CurveParameter,
-    TextParameter,
     is_logarithmic,
+    names_of,
     properties_of,
 )
 from solver.settings.scene import Settings
@@ -266,13 +266,11 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
         make = TABLES.get(definition.abscissa)
         if make and generator.random() < 0.4:
             return make(name, generator)
-        return str(generator.choice(list(definition.presets)))
-    if isinstance(definition, TextParameter):
-        return str(generator.choice(list(definition.presets)))
     if isinstance(definition, param.Boolean):
         return bool(generator.random() < 0.5)
-    if isinstance(definition, param.Selector):
-        return str(generator.choice(definition.objects))
+    names = names_of(definition)
+    if names:
+        return str(generator.choice(names))
     low, high = WIDE.get(name, definition.softbounds)
     if isinstance(definition, param.Integer):
         return int(generator.integers(low, high + 1))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -135,17 +136,9 @@ def case_from_file(path: Path) -> Case:
             entries = {"picture": settings.icon._asdict(), **entries}
             tables = dict.fromkeys(("picture", "flag", "surroundings"), dict)
             fields = fields_in(Case, entries, quantity=str, **tables)
-            tolerance = fields["tolerance"]
-            is_share = 0.0 < tolerance < 1.0
-            can = "a share above 0 and below 1"
-            remedy = "say what the mesh leaves"
-            require(is_share, "tolerance", tolerance, can, remedy)
+            _check_numbers(fields)
             check_controls(fields["controls"], settings)
             check_keys(fields["picture"], dict.fromkeys(Icon._fields, str))
-            instant = fields.get("instant", 1.0)
-            is_share = 0.0 <= instant <= 1.0
-            remedy = "give it as a share of the interval"
-            require(is_share, "instant", instant, "0 to 1", remedy)
             for name, kind_of_part in (
                 ("flag", PlotFlag),
                 ("surroundings", Surroundings),
@@ -155,6 +148,21 @@ def case_from_file(path: Path) -> Case:
             fields["quantity"] = reading(fields["quantity"])
             fields["picture"] = Icon(**fields["picture"])
         return Case(name=path.stem, settings=settings, **fields)
+
+
+def _check_numbers(fields: Mapping[str, Any]) -> None:
+    """Refuse zero as the known number, and a tolerance or instant that is no share."""
+    known = fields["known"]
+    is_divisor = math.isfinite(known) and known != 0.0
+    can = "a finite number other than zero"
+    require(is_divisor, "known", known, can, "deviations are shares of it")
+    tolerance = fields["tolerance"]
+    is_share = 0.0 < tolerance < 1.0
+    can = "a share above 0 and below 1"
+    require(is_share, "tolerance", tolerance, can, "say what the mesh leaves")
+    instant = fields.get("instant", 1.0)
+    remedy = "give it as a share of the interval"
+    require(0.0 <= instant <= 1.0, "instant", instant, "0 to 1", remedy)
 
 
 def _part(kind: type[Part], values: dict[str, Any], name: str) -> Part:

@@ -140,6 +140,16 @@ def test_settings_that_hold_together_may_stand_in_any_order() -> None:
     assert place["settings"].substructures == 80
 
 
+def test_a_value_of_the_page_that_does_not_go_with_the_address_is_told() -> None:
+    present = default_settings("bar").replace(elements=200, substructures=100)
+    place, refusal = read("?peak=1100&file=substructures", present)
+    assert "raise Elements" in refusal
+    assert place["settings"].peak == 1100.0
+    place, refusal = read("?elements=200&file=substructures", present)
+    assert not refusal
+    assert place["settings"].substructures == 100
+
+
 def test_what_is_too_long_is_left_out_and_said_and_stays_while_the_page_does() -> None:
     path = tuple(
         (t, 900.0 * t * (1.0 - t)) for t in np.linspace(0.0, 1.0, 200).tolist()

@@ -247,7 +247,7 @@ def test_the_map_has_the_status_of_each_instant_at_its_time() -> None:
 
 def test_of_curves_only_what_is_new_is_sent_and_not_each_by_itself() -> None:
     frame = frames_of("bar")[0]
-    count = frame.run.settings.n_substructures
+    count = frame.run.n_substructures
 
     def of(second: float) -> Frame:
         return replace(frame, extras={"spectra": count * [np.array([1.0, second])]})
@@ -286,16 +286,29 @@ def test_a_tap_on_the_map_selects_the_instant_and_the_place() -> None:
     assert view.state.selection.position == pytest.approx(0.5)
 
 
+@pytest.mark.parametrize(
+    ("scene", "changes", "count"),
+    [
+        ("wall", {"bricks": 3, "courses": 3, "bond": "stack", "cap": "free"}, 10),
+        ("arch", {"voussoirs": 7, "substructures": 2}, 16),
+    ],
+)
+def test_each_substructure_has_its_curve_of_singular_values(
+    scene: str, changes: dict[str, Any], count: int
+) -> None:
+    # A cap is no brick, and abutments are not cut as stones are.
+    settings = default_settings(scene).replace(instants=9, **changes)
+    frame = frame_of(settings, Needs(extras=frozenset({"spectra"})), ends=False)
+    data = view_of(Spectra, frame).sources["values"].data
+    assert len(data["xs"]) == len(data["part"]) == count
+
+
 def test_singular_values_wait_for_the_worker_to_send_them() -> None:
     last = frames_of("bar")[1]
     view = view_of(Spectra, last)
     count = len(view.sources["values"].data["xs"])
     shown(view, replace(last, extras={}))
-    assert (
-        count
-        == last.run.settings.n_substructures
-        == len(view.sources["values"].data["xs"])
-    )
+    assert count == last.run.n_substructures == len(view.sources["values"].data["xs"])
 
 
 def test_the_dot_of_the_instant_lies_on_the_loop() -> None:

@@ -212,7 +212,7 @@ def making_of(scene: str, size: int) -> Making:
         first = islice(iterations(problem, method_of(settings)), FIRST)
         firsts.append(seconds_of(lambda: list(first)))  # noqa: B023
     return Making(
-        settings.n_substructures,
+        len(problem.substructures),
         problem.n_dofs,
         problem.n_instants,
         statistics.median(makings),

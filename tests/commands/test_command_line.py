@@ -210,9 +210,9 @@ def test_interrupts_end_a_command_with_a_line_and_their_code(
     [
         (["stability", "--random", "few"], '--random = "few" is refused'),
         (["stability", "--random", "1", "--seed", "1e400"], '--seed = "1e400" is'),
-        (["stability", "--seed", "-1"], "--seed = -1 is refused"),
+        (["stability", "--seed", "-1"], '--seed = "-1" is refused'),
         (["study", "bar", "--repeats", "1.5"], "write a whole number"),
-        (["sweep", "bar", "--of", "force", "--limit", "x"], "seconds above zero"),
+        (["sweep", "bar", "--of", "force", "--limit", "x"], "seconds above 0"),
         (["sweep", "bar", "--of", "force", "--vary", "elements=2.5:9:3"], "two ends"),
         (["mesh", "bar", "--of", "seconds"], "peak_displacement, displacement, force,"),
         (["compare", "bar", "--with", "loop.csv", "--interface", "x"], "--interface"),

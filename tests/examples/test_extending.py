@@ -91,7 +91,12 @@ def test_a_structure_is_bodies_and_their_joints(
 
 def test_a_quantity_is_a_function_of_a_run() -> None:
     (program,) = blocks("quantity")
-    known: dict[str, Any] = {"quantity": quantity, "np": np, "FinishedRun": object}
+    known: dict[str, Any] = {
+        "quantity": quantity,
+        "math": math,
+        "np": np,
+        "FinishedRun": object,
+    }
     exec(program, known | {"slips_of": cycles.slips_of}, known)
     found = known["friction_power"]
     settings = CATALOGUE["bar"].checked({"load": "ramp", "elements": 100})
@@ -105,6 +110,7 @@ def test_a_quantity_is_a_function_of_a_run() -> None:
     expected = np.diff(energy) / np.diff(steps)
     assert found(run) == pytest.approx(float(expected[0]), rel=0.02)
     assert (found.name, found.unit) == ("friction_power", "W")
+    assert math.isnan(found(finished_run(settings.replace(instants=1))))
 
 
 def test_a_law_is_a_local_stage(

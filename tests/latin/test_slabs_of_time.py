@@ -128,7 +128,7 @@ def test_the_command_solves_in_slabs(
     assert said["error_force"] < 0.01
     assert np.load(out)["displacement"].shape[1] == 33
     assert main([*asked, "--slab", "0"]) == 2
-    assert "slab = 0 is refused" in capsys.readouterr().err
+    assert '--slab = "0" is refused' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

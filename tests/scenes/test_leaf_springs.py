@@ -188,7 +188,7 @@ def test_leaves_touch_as_far_as_the_shorter_one_goes_and_are_cut_where_it_ends()
         problem.contacts[name].positions[-1] for name in ("contact 1-2", "contact 2-3")
     ]
     assert ends == pytest.approx([0.25, 0.15])
-    assert len(problem.substructures) == settings.n_substructures == 3 + 5 + 1
+    assert len(problem.substructures) == 3 + 5 + 1
     assert problem.inside is not None
     assert len(problem.inside.nodes) == settings.n_nodes == (11 + 21 + 7) * 3
     stack = settings.structure()

@@ -122,11 +122,9 @@ BROKEN = {
         two_squares(bodies=[1, 2, 1, 1], edges=[[0, 1]], lines=[4]),
         "a mesh of 2 pieces",
     ),
-    "one body": (
-        two_squares(
-            triangles=[[0, 1, 2], [0, 2, 3]], bodies=[1, 1], edges=[[0, 1]], lines=[4]
-        ),
-        "without a contact, of: lower",
+    "a single body": (
+        two_squares(bodies=[1, 1, 1, 1], edges=[[0, 1], [4, 5]], lines=[4, 5]),
+        "without a contact",
     ),
     "does not match": (
         two_squares(

@@ -26,7 +26,7 @@ title = "Mine"
 question = "How far does it move?"
 source = "From first principles."
 quantity = "{quantity}"
-known = 4.095e-4
+known = {known}
 tolerance = {tolerance}
 formula = "u = F^2 / (2 E S μ p)"
 how = "Equilibrium of what slips."
@@ -34,7 +34,10 @@ change = "The load."
 controls = {controls}
 """
 USUAL = {
-    **{"setting": "", "quantity": "end_displacement", "tolerance": "0.001"},
+    "setting": "",
+    "quantity": "end_displacement",
+    "known": "4.095e-4",
+    "tolerance": "0.001",
     "controls": '["load"]',
 }
 
@@ -116,6 +119,8 @@ def test_the_proof_takes_a_case_of_ones_own(
     [
         ({"setting": "peek = 3"}, ["peek = 3", "did you mean peak ("]),
         ({"quantity": "luck"}, ["case: quantity", "end_displacement"]),
+        ({"known": "0"}, ["case: known = 0", "finite"]),
+        ({"known": "nan"}, ["case: known = NaN", "finite"]),
         ({"tolerance": "2"}, ["case: tolerance = 2", "below 1"]),
         ({"controls": '["peak"]'}, ["case: controls", "does something here"]),
         ({"controls": '"load"'}, ['case: controls = "load"', "a list"]),

@@ -15,14 +15,14 @@ CONTACT = "contact"
 
 
 def check_named(mesh: NamedMesh) -> None:
-    """Refuse edges that are neither contact nor side, and bodies that are glued.
+    """Refuse edges that are neither contact nor side, and bodies glued or apart.
 
     Raises
     ------
     RefusedError
         For elements without area; for edges with a name that follow no element or run
-        through a body; where bodies have common edges without a name, or touch with
-        nodes that do not match; for a mesh without a contact.
+        through a body; where bodies have common edges without a name, touch with nodes
+        that do not match, or do not touch at all.
     """
     named: set[tuple[int, int]] = set()
     for (name, bodies), edges in mesh.groups.items():

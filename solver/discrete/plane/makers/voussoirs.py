@@ -66,7 +66,7 @@ class Ring:
 
     @property
     def crown(self) -> float:
-        """Height of the outer side at the crown m."""
+        """Height of the outer side at the crown, m."""
         return float(np.sqrt(self.outer**2 - self.offset**2))
 
     @property
