@@ -198,7 +198,7 @@ def _largest_needed(holds: list[_Hold]) -> float:
     return 0.0
 
 
-@quantity("Smallest friction that holds", applies=_rubs_by_mu)
+@quantity("Smallest friction that holds against these forces", applies=_rubs_by_mu)
 def holding_friction(run: FinishedRun) -> float:
     """Smallest coefficient of friction at which no interface slides as a whole.
 
