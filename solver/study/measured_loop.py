@@ -30,7 +30,7 @@ from solver.arrays import Array, Flags, Indices
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Axes, Loop
-from solver.files.columns import KINDS, TableColumn
+from solver.files.columns import TableColumn, quantities_of_axis
 from solver.files.tables import Table
 from solver.files.units import size_in, unit_doubt
 from solver.settings.values import SettingError
@@ -145,7 +145,7 @@ def columns_of(
     # A column that is taken is not asked again: both could have the same word.
     for title, unit in axes:
         remedy = f"name that of {title}, {unit}"
-        kinds = KINDS.get(unit, {unit})
+        kinds = quantities_of_axis(title, unit)
         both.append(table.choose(rest, kinds, unit, remedy=remedy))
         rest.remove(both[-1])
     return time, both[0], both[1]
