@@ -124,9 +124,7 @@ class Page:
         self._class = ClassDialog(self._member, self._link.join)
         self._guide.view.stylesheets = [STYLE]
         self._class.view.stylesheets = [STYLE]
-        self._refusal = PlainText(
-            margin=(4, 8), styles={"font-weight": "bold"}
-        )
+        self._refusal = PlainText(margin=(4, 8), styles={"font-weight": "bold"})
         self._refused = pn.Row(
             self._refusal, margin=0, css_classes=["refused"], stylesheets=[STYLE]
         )
