@@ -26,7 +26,8 @@ WORDS = {
     "force": "force load f fx fy fz p kraft last tension zugkraft loadcell",
     "displacement": (
         "displacement disp displ u ux uy uz weg verschiebung deflection durchbiegung "
-        "stroke hub travel extension ext elongation crosshead traverse"
+        "stroke hub travel extension ext elongation crosshead traverse movement "
+        "settlement setzung"
     ),
     "pressure": "pressure load p druck last traction stress spannung",
     "friction force": "friction frictiontraction reibung reibkraft reibungskraft",
