@@ -436,6 +436,15 @@ def test_points_that_stand_for_a_preset_are_taken_as_they_stand() -> None:
     assert taken
 
 
+def test_a_small_cross_section_has_no_power_of_ten_in_its_field() -> None:
+    """It was 3.14e-06 m²."""
+    state = of_scene("bar")
+    control = SettingControl("section", state)
+    assert (control.field.value, control.field.label[-3:]) == ("3.14", "mm²")
+    control.field.value = "0.05 cm2"
+    assert held(state, "section") == pytest.approx(5e-6)
+
+
 def test_a_number_is_read_in_each_unit_of_its_kind() -> None:
     assert typed_amount("2 d", Unit("s"), "s") == 172800.0
     assert typed_amount("2 min", Unit("h", 3600.0), "s") == 120.0
