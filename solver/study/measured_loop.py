@@ -41,6 +41,8 @@ CAN = (
     "CSV whose head names displacement and force of every row, "
     "and their time if it is known"
 )
+STILL = 1e-6
+"""Share of its range up to which a displacement stands still from step to step."""
 ALIKE = 0.02
 """Share of the range up to which misfits of the ends of branches count as equal."""
 
@@ -76,11 +78,27 @@ class MeasuredLoop:
     bare: tuple[str, str] = ("", "")
     given: tuple[str, str, str] = ("", "", "")
 
-    def unit_doubts(self, displacement: Array, force: Array) -> list[str]:
-        """Sentences on columns that seem thousand times too large or small for a run.
+    def doubts(self, displacement: Array, force: Array) -> list[str]:
+        """Sentences on a loop that is doubtful beside a run.
 
         Displacement and force of the run have shape (n_instants,), in the units of the
-        loop. Only columns without a unit in the file are doubted.
+        loop. Columns without a unit in the file may seem thousand times too large or
+        small; rows without times cannot be matched where one of both stands still.
+        """
+        found = self._unit_doubts(displacement, force)
+        stands = np.abs(np.diff(displacement)) <= STILL * np.ptp(displacement)
+        change = float(np.abs(np.diff(force))[stands].sum())
+        if self.times is None and change > SMALLEST_SWING * np.ptp(force):
+            found.append(
+                "In the run the force changes while the displacement stands still: "
+                "such rows need their times to be compared"
+            )
+        return found
+
+    def _unit_doubts(self, displacement: Array, force: Array) -> list[str]:
+        """Sentences on columns that seem thousand times too large or small for a run.
+
+        Displacement and force of the run have shape (n_instants,).
         """
         measured = (self.displacement, self.force)
         of_run = (displacement, force)
