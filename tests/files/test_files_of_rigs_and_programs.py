@@ -461,7 +461,7 @@ def test_opening_a_file_reads_it_once_and_makes_no_problem(monkeypatch: Any) -> 
         assert made.message.object
 
 
-def test_rows_without_times_are_doubted_where_a_run_stands_while_its_force_changes() -> (
+def test_rows_without_times_are_doubted_where_a_run_stands_as_its_force_changes() -> (
     None
 ):
     """A fit of an arch, whose weight comes first, found nothing and did not say why."""
