@@ -437,7 +437,7 @@ def test_points_that_stand_for_a_preset_are_taken_as_they_stand() -> None:
 
 
 def test_a_small_cross_section_has_no_power_of_ten_in_its_field() -> None:
-    """It was 3.14e-06 m²."""
+    """A cross section was 3.14e-06 m²."""
     state = of_scene("bar")
     control = SettingControl("section", state)
     assert (control.field.value, control.field.label[-3:]) == ("3.14", "mm²")

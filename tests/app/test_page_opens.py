@@ -219,7 +219,7 @@ def count_of(words: str, page: Page) -> int:
 @pytest.mark.usefixtures("document")
 @pytest.mark.parametrize("tab", TABS)
 def test_a_refusal_is_told_once_on_whichever_tab_is_in_sight(tab: str) -> None:
-    """That of an address stood in the status line of the tab Live alone."""
+    """A refusal of an address stood in the status line of the tab Live alone."""
     page = Page(PageState(default_settings("bar"), refusal="No moon.", tab=tab))
     assert count_of("No moon.", page) == 1
     page.state.refusal = "No sun."

@@ -381,7 +381,7 @@ def test_a_report_is_read_with_its_files_and_its_links_lead_here(
 def test_the_progress_of_a_table_is_told_in_words(
     made: reports.Reports, kind: str, row: dict[str, str], last: str
 ) -> None:
-    """It was a line of a console, without its head."""
+    """Progress was a line of a console, without its head."""
     made.kind.value = kind
     shown, _ = reports.TABLES[kind]
     line = line_of(dict.fromkeys(shown, "0") | row, shown)

@@ -227,7 +227,8 @@ def test_messages_state_how_a_table_was_understood(kind: str, said: str) -> None
 def test_a_loop_is_read_whose_head_has_the_titles_of_its_scene(scene: str) -> None:
     """A loop of *Slip at the well* was taken for a path of the fluid."""
     axes = CATALOGUE[scene].checked(SMALL[scene]).structure().axes
-    heads = ["time [s]", *(f"{title} [{unit}]" for title, unit in axes)]
+    heads = ["time [s]"]
+    heads += [f"{title} [{unit}]" for title, unit in axes]
     rows = "0,0,0\n0.5,1.5e6,1234.5e3\n1,2.25e6,2e6\n1.5,-1e6,-5e5\n"
     table = table_of(",".join(heads) + "\n" + rows)
     assert use_of(table, axes) is Use.LOOP
