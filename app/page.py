@@ -124,6 +124,10 @@ class Page:
         self._class = ClassDialog(self._member, self._link.join)
         self._guide.view.stylesheets = [STYLE]
         self._class.view.stylesheets = [STYLE]
+        self._refusal = PlainText(margin=(4, 8), styles={"font-weight": "bold"})
+        self._refused = pn.Row(
+            self._refusal, margin=0, css_classes=["refused"], stylesheets=[STYLE]
+        )
         self._beside = wrapped(
             self._live.view, self._guide.view, sizing_mode="stretch_width"
         )
@@ -197,6 +201,7 @@ class Page:
             told,
         )
         watch(lambda event: self._turn(event.new), "tab")
+        watch(lambda event: self._place(), "refusal")
         watch(lambda event: self._dress(), "view")
         watch(lambda event: self._show_controls(), "is_narrow")
         watch(lambda event: self._on_height(), "height")
@@ -343,6 +348,10 @@ class Page:
         if self._class.view.visible:
             main.append(self._class.view)
             roles.append("with-line")
+        # The tab Live has it in its status line.
+        if self.state.refusal and self.state.tab != TABS[0]:
+            self._refusal.object = self.state.refusal
+            main.append(self._refused)
         if list(self._main) != main:
             self._main[:] = main
         self._main.css_classes = roles

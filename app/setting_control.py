@@ -56,6 +56,8 @@ class SettingControl:
         self.slider: pmui.FloatSlider | None = None
         self.field, self.views = self._make()
         self.field.param.watch(lambda event: self._on_field(event.new), "value")
+        if isinstance(self.field, pmui.TextInput):
+            self.field.param.watch(self._forgive, ["value_input", "enter_pressed"])
         self.update()
         # No browser has shown the initial values of the widgets.
         self._echoes = Echoes(state)
@@ -219,6 +221,21 @@ class SettingControl:
             text = line[:1].upper() + line[1:]
         if getattr(self.field, "helper_text", text) != text:
             self.field.param.update(helper_text=text, error_state=bool(refusal))
+
+    def _forgive(self, event: Any) -> None:
+        """Forget a refusal once the shown value is typed again.
+
+        To the server that is no new value.
+        """
+        field = self.field
+        if self._is_updating or not field.error_state:
+            return
+        # What was refused may be told once more, after it was replaced.
+        is_shown = event.name == "enter_pressed" or event.new == field.value
+        if is_shown:
+            if self._state.refusal == field.helper_text:
+                self._state.refusal = ""
+            self._explain("")
 
     def _on_field(self, value: Any) -> None:
         if self._is_updating or value is None:

@@ -54,6 +54,8 @@ SMALL = 1e-3
 """Number of units below which a key figure would have a power of ten."""
 LOST = "no figures are told, as no solution is found at some instants"
 """Hint over figures in place of which there is a dash."""
+ON_ITS_WAY = "in an iterate on its way sides are not yet moved as the load says"
+"""Hint over a displacement that may differ from the prescribed one in the picture."""
 OWNER = "after the linear stage that follows:"
 """Words before the figures of an iteration that is shown up to its local stage."""
 
@@ -199,6 +201,8 @@ def figures_line(frame: Frame, selection: Selection) -> str:
             value = 0.0
         figures[figure.title] = figure.in_words(value)
         hints[figure.title] = _over_time(frame, figure)
+        if figure.unit == "m" and frame.status is None and _is_moved(frame):
+            hints[figure.title] += f"; {ON_ITS_WAY}"
     figures["Slips"] = percent(float(frame.slips[column]))
     hints["Slips"] = MEANINGS["Slips"]
     energy = _energy(frame)
@@ -215,6 +219,11 @@ def figures_line(frame: Frame, selection: Selection) -> str:
     if selection.stage == LOCAL:
         owner = OWNER
     return html("figures.html", figures=figures, hints=hints, owner=owner)
+
+
+def _is_moved(frame: Frame) -> bool:
+    """Check whether a load of a run is the motion of a side."""
+    return any(act.unit == "m" for act in frame.run.geometry.description.acts)
 
 
 def _is_lost(frame: Frame) -> bool:

@@ -32,7 +32,11 @@ ROW = re.compile(r"^\| (.+) \| (.+) \|$", re.MULTILINE)
 FOCUS = {"&:focus-within": {"outline": "2px solid", "outlineOffset": "2px"}}
 """Look of a file button while keys go to it: its focus lies on a field within it."""
 
-WRAPPED = {"& .MuiDialogTitle-root": {"flex": "1 1 0", "minWidth": 0}}
+WRAPPED = {
+    "& .MuiDialogTitle-root": {"flex": "1 1 0", "minWidth": 0},
+    # In the dark it would be nearly black.
+    "& .MuiDialogTitle-root + .MuiIconButton-root": {"color": "inherit"},
+}
 """Look of a dialog whose title wraps: on a phone it would push the button that closes
 the dialog out of sight."""
 

@@ -15,6 +15,8 @@ from app.state import PageState
 from app.templates import html
 from app.widgets import PlainText, button, download, looks, wrapped
 from solver.files.saved import dump
+from solver.study import proof, stability_report
+from solver.study.page import entries_of
 from solver.study.proof import PAGE
 
 WORDS: dict[str, str] = TEXTS["reports"]
@@ -25,6 +27,12 @@ COMMANDS = {
     "Proof": ("proof",),
 }
 """Arguments of the commands, by the titles that `WORDS` has of them."""
+TABLES = {
+    "Stability": (stability_report.SHOWN, ("scene", "case", "verdict")),
+    "Proof": (proof.SHOWN, ("case", "quantity", "holds")),
+}
+"""Columns of the tables that commands print while they run, and those of them that the
+page tells of the last row."""
 LOOKS: dict[str, Any] = {"size": "small", "margin": (10, 6)}
 SCHEMES = {
     False: "color-scheme: light; --dark: 0",
@@ -189,6 +197,17 @@ class Reports(CommandTab):
         """The command of the chosen report."""
         arguments = (*COMMANDS[self.report], "--out", OUT)
         return arguments, {SETTINGS: dump(self.state.settings)}
+
+    def said(self, progress: str) -> str:
+        """Progress; of a command that prints a table the number of its rows so far."""
+        since, _, line = progress.partition(": ")
+        rows = self.job.lines[1:]
+        if self._started not in TABLES or line not in rows:
+            return progress
+        shown, names = TABLES[self._started]
+        entries = entries_of(line, shown)
+        last = ", ".join(entries[name] for name in names)
+        return f"{since}: {len(rows)} done. The last one: {last}."
 
     @property
     def words(self) -> str:

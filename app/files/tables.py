@@ -43,12 +43,12 @@ def read_as(use: str, table: Table, state: PageState) -> tuple[Content, str]:
 
 
 def _doubts(loop: MeasuredLoop, state: PageState) -> list[str]:
-    """Warnings if a loop seems thousand times too large or small for the shown run."""
+    """Warnings on a loop that is doubtful beside the shown run."""
     frame = state.frame
     # Without a run of the same quantities there is nothing to compare with.
     if frame is None or (frame.run.across[1], frame.run.up[1]) != loop.units:
         return []
-    return [f"{doubt}." for doubt in loop.unit_doubts(*frame.loop)]
+    return [f"{doubt}." for doubt in loop.doubts(*frame.loop)]
 
 
 def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, str]:
@@ -75,7 +75,10 @@ def table_of(data: bytes | str, source: str) -> Table:
     """Read the table in a file of any format."""
     if len(data) > LARGEST:
         most = f"a table of at most {LARGEST // 1_000_000} MB"
-        remedy = "leave out lines, or give it whole to the command compare"
+        remedy = (
+            f"it has {len(data) / 1e6:.1f} MB: leave out lines, or give it whole to "
+            "the command compare"
+        )
         raise SettingError("the table", source, most, remedy)
     return read_table(data, source, "the table", "a table of time and value")
 

@@ -22,8 +22,11 @@ from app.worker.references import has_reference
 SEEN = (1e-3, 10.0)
 """Errors that are in sight in any case. Indicators widen the axis downwards alone:
 they are numbers of other sizes."""
-NAME = 6.0
-"""Distance of the name of a curve from its end, px."""
+NAME = 10.0
+"""Distance of the name of a curve from its end, where there may be a ring, px."""
+RING = 11
+LINE = 2.5
+"""Diameter of that ring, and width of its line, px."""
 STEPS = 9
 """Number of places along the line of the goal that its name may have."""
 LEAST = 1e-14
@@ -33,7 +36,7 @@ FOOT = 8.0
 NAMED = 1.25
 """Least length of the axis of iterations over that of the curves, at whose ends their
 names stand."""
-APART = 1.05
+APART = 1.15
 OFF = 0.6
 """Least distance of two of these names over their type size, and of a name from the
 line of the goal over that."""
@@ -101,8 +104,8 @@ class Convergence(ErrorPlot):
         for column, (_, color, width, dash) in reversed(CURVES.items()):
             lines.append(self.add(column, color=color, width=width, dash=dash))
         self.add("newest", "Scatter", color=ERROR, size=8)
-        ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
-        self.add("answer", "Scatter", size=11, **ring)
+        ring = {"line_color": ERROR, "line_width": LINE, "fill_alpha": 0}
+        self.add("answer", "Scatter", size=RING, **ring)
         self.add(
             "names",
             "Text",

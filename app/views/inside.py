@@ -37,9 +37,14 @@ class ExtraScene(Scene):
         (name,) = self.needs
         extra = frame.extras.get(name)
         if extra is None:
-            self.fill(name, **{key: [] for key in self.sources[name].data})
+            self._clear()
         else:
             self._show(extra, self.picture)
+
+    def _clear(self) -> None:
+        """Leave nothing of the extra of a frame before."""
+        (name,) = self.needs
+        self.fill(name, **{key: [] for key in self.sources[name].data})
 
     def _show(self, extra: Any, picture: Picture) -> None:
         raise NotImplementedError
@@ -65,7 +70,13 @@ class Stress(ExtraScene):
         self.bar = color_bar(plot, self.colors)
         super()._draw(plot)
 
+    def _clear(self) -> None:
+        super()._clear()
+        # Its title may be of another scene.
+        self.bar.visible = False
+
     def _show(self, extra: Any, picture: Picture) -> None:
+        self.bar.visible = True
         title, si, values = extra
         largest = float(np.abs(values).max())
         unit = unit_for(largest, si)
@@ -101,6 +112,10 @@ class Thrust(ExtraScene):
         self.add("thrust", "MultiLine", "xs ys line_width", **look)
         look = {"fill_color": "white", "line_color": ERROR, "line_width": 2.5}
         self.add("hinges", "Scatter", "x y", size=9, **look)
+
+    def _clear(self) -> None:
+        super()._clear()
+        self.fill("hinges", x=[], y=[])
 
     def _magnification(self, frame: Frame, layout: Layout) -> float:
         return 0.0

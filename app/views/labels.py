@@ -32,7 +32,7 @@ FAR = 1.5
 """Distance of words of a weight from its arrow, over that of rows, from which on a line
 leads there."""
 MOST_ROWS = 3
-"""Largest number of rows by which a word makes way for another."""
+"""Largest number of rows by which a word makes way for others, bodies and ground."""
 
 
 def labels_of(picture: Picture) -> tuple[Columns, Columns]:
@@ -209,6 +209,9 @@ def _name_of_joint(picture: Picture, obstacles: Obstacles) -> list[Word]:
         # Beside a joint that ends within bodies the next row may be free.
         places += [name, *in_rows(layout, name, 1)]
     places += _names_aside(picture, line)
+    # Below the ground of a case, say.
+    for name in _names_at_ends(picture, line):
+        places += in_rows(layout, name, MOST_ROWS)
     free = [place for place in places if not obstacles.covered_by(place)]
     return free[:1]
 

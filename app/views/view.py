@@ -389,12 +389,20 @@ class View:
 class ExtraView(View):
     """A view of one extra, which the worker sends when the view is visible."""
 
+    _of_scene = ""
+
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the extra of a frame, if the frame has it."""
         (name,) = self.needs
         extra = frame.extras.get(name)
+        scene = frame.run.settings.scene
         if extra is not None:
+            self._of_scene = scene
             self._show(extra, frame, selection)
+        elif scene != self._of_scene:
+            # What is there is of the scene before.
+            for key, source in self.sources.items():
+                self.fill(key, **{column: [] for column in source.data})
 
     def _show(self, extra: Any, frame: Frame, selection: Selection) -> None:
         raise NotImplementedError

@@ -39,6 +39,8 @@ FIRST = 0.25
 """Time of a search at the pace `WHOLE`, and time before its second iterate, s.
 Intervals shrink by one ratio: the first iterates are seen one by one, and a hundred
 iterations last as long as thirty."""
+SOON = 0.1
+"""Estimated time of a reference up to which the first picture waits for it, s."""
 KEPT = 24_000_000
 """Largest memory of the iterates of a run that are kept to be shown again, bytes;
 beyond, every other one is dropped."""
@@ -157,7 +159,13 @@ class Runner:
 
     @property
     def is_presentable(self) -> bool:
-        """Check whether there is a new iterate to show."""
+        """Check whether there is a new iterate to show.
+
+        The first one waits for a reference that is there soon. Without it nobody knows
+        how far bodies move in the end: their picture would jump.
+        """
+        if self._is_to_compare(is_seen=False) and self.cost.reference < SOON:
+            return False
         return self.has_news and self.iterate is not None and not self.hurries
 
     def rest(self, is_seen: bool = True) -> float | None:

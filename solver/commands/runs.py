@@ -204,7 +204,7 @@ def _warn_of_doubts(
     elif isinstance(comparison, LoopComparison):
         warn(*comparison.drive_messages(figures["distance_given"]))
         loop = comparison.loop.along(solution.iterate)
-        warn(*comparison.measured.unit_doubts(*loop))
+        warn(*comparison.measured.doubts(*loop))
 
 
 def _print_distance(figures: Mapping[str, Any], source: str) -> None:
@@ -230,7 +230,7 @@ def _fit(chosen: argparse.Namespace) -> int:
         nonlocal printed
         if not printed:
             run = nearest.run
-            warn(*measured.unit_doubts(run.displacement, run.force))
+            warn(*measured.doubts(run.displacement, run.force))
         if time.monotonic() - printed < OFTEN:
             return
         printed = time.monotonic()

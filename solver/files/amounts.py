@@ -13,6 +13,7 @@ PREFIXES = {"n": 1e-9, "µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 
 PREFIXED = ("m", "N", "Pa", "J", "N/m", "N/m^2", "N/m^3", "N·m", "N·m/m", "rad")
 """Units that take a prefix."""
 TIMES = {"s": 1.0, "h": 3600.0, "d": 86400.0}
+AREAS = {"mm²": 1e-6, "m²": 1.0}
 LATER = {"GPa": 10.0, "GN/m²": 10.0, "GN/m³": 10.0, "h": 3.0, "d": 3.0}
 """Least value in a unit with which the unit is taken, where it is not 1: a stress of
 3000 MPa is not read in GPa."""
@@ -43,6 +44,8 @@ def sizes_of(unit: str) -> dict[str, float]:
     name = unit.replace("^2", "²").replace("^3", "³")
     if unit == "s":
         return TIMES
+    if unit == "m^2":
+        return AREAS
     if unit in PREFIXED:
         return {prefix + name: size for prefix, size in PREFIXES.items()}
     return {name: 1.0}

@@ -26,14 +26,15 @@ WORDS = {
     "force": "force load f fx fy fz p kraft last tension zugkraft loadcell",
     "displacement": (
         "displacement disp displ u ux uy uz weg verschiebung deflection durchbiegung "
-        "stroke hub travel extension ext elongation crosshead traverse"
+        "stroke hub travel extension ext elongation crosshead traverse movement "
+        "settlement setzung"
     ),
     "pressure": "pressure load p druck last traction stress spannung",
     "friction force": "friction frictiontraction reibung reibkraft reibungskraft",
-    "moment": "moment load last biegemoment",
+    "moment": "moment load last torque",
     "gap": "gap spalt",
     "slip": "slip gleitweg",
-    "angle": "angle winkel",
+    "angle": "angle winkel slope neigung",
     "curvature": "curvature krümmung",
     "factor": "factor faktor",
     "interface": "interface contact joint fuge grenzfläche",
@@ -66,6 +67,7 @@ KINDS = {
     "": {"strain"},
 }
 """Quantities of a setting by its unit."""
+DIRECTIONS = "x", "y", "z"
 _ENDINGS = (
     "zeit",
     "time",
@@ -80,6 +82,9 @@ _ENDINGS = (
     "position",
     "druck",
     "spannung",
+    "winkel",
+    "moment",
+    "krümmung",
 )
 _BRACKETS = re.compile(r"(.*?)\s*[\[(](?:in )?([^\[\]()]*)[\])][^\[\]()]*")
 _BEHIND = re.compile(r"(.*?)[\s,_/.:;-]+([^\s,_]+)")
@@ -114,6 +119,9 @@ class TableColumn:
         joined = name.replace(" ", "")
         last = name.rstrip("0123456789 ").rpartition(" ")[2]
         words = [name, joined, last]
+        # Of a displacement along x the last word is its direction.
+        if last in DIRECTIONS:
+            words.insert(2, name.partition(" ")[0])
         words += [ending for ending in _ENDINGS if last.endswith(ending)][:1]
         for word in words:
             meant = _meant_by().get(word)
@@ -198,6 +206,16 @@ def quantities_of(title: str, units: str) -> Collection[str]:
     for unit in units.split(" or "):
         quantities |= KINDS.get(unit, set())
     return quantities
+
+
+def quantities_of_axis(title: str, unit: str) -> Collection[str]:
+    """Quantities of an axis of a loop: those of its unit, and that its title names.
+
+    A title begins with the quantity, as in *Slip at the well*.
+    """
+    first = title.partition(" ")[0]
+    named = TableColumn(0, name=first).quantities[0]
+    return KINDS.get(unit, {unit}) | named
 
 
 def are_units(cells: list[str]) -> bool:

@@ -68,6 +68,7 @@ from functools import partial
 import numpy as np
 
 from solver.arrays import Array, Flags, Indices, read_only
+from solver.files.amounts import Unit
 from solver.files.columns import TableColumn
 from solver.files.decimal_signs import notation_of
 from solver.files.disk import LARGEST, too_large
@@ -80,6 +81,8 @@ from solver.settings.values import Refuse, SettingError
 
 STANDS_IN = {"displacement": "position"}
 """Quantities that may stand in for others that no column names."""
+DIGITS = 6
+"""Digits of the least and the largest value of a column in a message."""
 MOST_SAID = 5
 """Largest number of lines that a message names."""
 
@@ -282,7 +285,10 @@ class Table:
         for column, name, unit in zip(columns, names, units, strict=True):
             heads.append(column.message(name, unit))
         # The range shows at a glance whether a unit is a thousand times off.
-        ends = f"from {numbers[-1].min():g} to {numbers[-1].max():g}"
+        written = Unit("")
+        least = written(float(numbers[-1].min()), DIGITS)
+        largest = written(float(numbers[-1].max()), DIGITS)
+        ends = f"from {least} to {largest}"
         last_unit = columns[-1].unit or units[-1]
         if last_unit not in ("", "-", "1"):
             ends = f"{ends} {last_unit}"

@@ -69,6 +69,8 @@ SYMBOLS: dict[str, tuple[Fraction, Dimensions]] = _prefixed() | {
     "h": (Fraction(3600), (0, 0, 1, 0, 0)),
     "°": (Fraction(1), (0, 0, 0, 1, 0)),
     "deg": (Fraction(1), (0, 0, 0, 1, 0)),
+    # In small letters it would be the hundredth of a right angle.
+    "Grad": (Fraction(1), (0, 0, 0, 1, 0)),
     "rad": (Fraction(180.0 / math.pi), (0, 0, 0, 1, 0)),
     "K": (Fraction(1), (0, 0, 0, 0, 1)),
     "°C": (Fraction(1), (0, 0, 0, 0, 1)),

@@ -30,7 +30,7 @@ from solver.arrays import Array, Flags, Indices
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Axes, Loop
-from solver.files.columns import KINDS, TableColumn
+from solver.files.columns import TableColumn, quantities_of_axis
 from solver.files.tables import Table
 from solver.files.units import size_in, unit_doubt
 from solver.settings.values import SettingError
@@ -41,6 +41,8 @@ CAN = (
     "CSV whose head names displacement and force of every row, "
     "and their time if it is known"
 )
+STILL = 1e-6
+"""Share of its range up to which a displacement stands still from step to step."""
 ALIKE = 0.02
 """Share of the range up to which misfits of the ends of branches count as equal."""
 
@@ -76,11 +78,27 @@ class MeasuredLoop:
     bare: tuple[str, str] = ("", "")
     given: tuple[str, str, str] = ("", "", "")
 
-    def unit_doubts(self, displacement: Array, force: Array) -> list[str]:
-        """Sentences on columns that seem thousand times too large or small for a run.
+    def doubts(self, displacement: Array, force: Array) -> list[str]:
+        """Sentences on a loop that is doubtful beside a run.
 
         Displacement and force of the run have shape (n_instants,), in the units of the
-        loop. Only columns without a unit in the file are doubted.
+        loop. Columns without a unit in the file may seem thousand times too large or
+        small; rows without times cannot be matched where one of both stands still.
+        """
+        found = self._unit_doubts(displacement, force)
+        stands = np.abs(np.diff(displacement)) <= STILL * np.ptp(displacement)
+        change = float(np.abs(np.diff(force))[stands].sum())
+        if self.times is None and change > SMALLEST_SWING * np.ptp(force):
+            found.append(
+                "In the run the force changes while the displacement stands still: "
+                "such rows need their times to be compared"
+            )
+        return found
+
+    def _unit_doubts(self, displacement: Array, force: Array) -> list[str]:
+        """Sentences on columns that seem thousand times too large or small for a run.
+
+        Displacement and force of the run have shape (n_instants,).
         """
         measured = (self.displacement, self.force)
         of_run = (displacement, force)
@@ -145,7 +163,7 @@ def columns_of(
     # A column that is taken is not asked again: both could have the same word.
     for title, unit in axes:
         remedy = f"name that of {title}, {unit}"
-        kinds = KINDS.get(unit, {unit})
+        kinds = quantities_of_axis(title, unit)
         both.append(table.choose(rest, kinds, unit, remedy=remedy))
         rest.remove(both[-1])
     return time, both[0], both[1]

@@ -271,6 +271,16 @@ def head_of(shown: Shown) -> str:
     return line_of({name: head for name, (head, _) in shown.items()}, shown)
 
 
+def entries_of(line: str, shown: Shown) -> dict[str, str]:
+    """Texts of the entries of a row by name, from its line of a console."""
+    entries = {}
+    begin = 0
+    for name, (_, width) in shown.items():
+        entries[name] = line[begin : begin + width].strip()
+        begin += width + 1
+    return entries
+
+
 def write_csv(
     file: Path, head: Sequence[str], rows: Iterable[Iterable[object]]
 ) -> None:

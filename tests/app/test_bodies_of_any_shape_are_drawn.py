@@ -451,6 +451,20 @@ def test_the_name_of_a_joint_lies_on_no_body_where_one_end_is_free() -> None:
         assert not meet(box, corners.min(axis=1), corners.max(axis=1)), name
 
 
+def test_a_joint_on_the_ground_of_a_case_has_its_name_below_the_ground() -> None:
+    """The name of a joint between logs and ground had no place at all."""
+    case = CASES["heap-of-logs"]
+    frame = ran(case.settings, ends=False)
+    view = Scene(PageState(case.settings, frame=frame, case=case.name))
+    _ = view.figure
+    view.lay_out(520.0, 420.0)
+    view.update(frame, Selection(case.instant), None)
+    assert view.picture is not None
+    ground = view.picture.page(view.picture.ground)
+    _, high = dict(boxes_of_words(view))["ground 1"]
+    assert high[1] < ground[..., 1].min()
+
+
 @pytest.mark.parametrize(
     "scene", ["arch", "belt", "block", "bundle", "fault", "incline", "mesh", "wall"]
 )

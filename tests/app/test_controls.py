@@ -12,6 +12,7 @@ import panel_material_ui as pmui
 import param
 import pytest
 from panel.models.esm import ReactComponent
+from panel.util import edit_readonly
 
 from app.controls import FILES, Controls, _groups_of
 from app.files.points import CurveDialog
@@ -162,6 +163,30 @@ def test_a_refusal_stands_at_the_field_in_its_unit_and_the_value_before_is_back(
     parts.update()
     assert not parts.field.error_state
     assert not state.refusal
+
+
+def test_a_refusal_is_forgotten_once_the_shown_value_is_typed_again() -> None:
+    state = of_scene("bar")
+    field = SettingControl("peak", state).field
+
+    def type_in(**values: str) -> None:
+        """Have the browser tell what is typed, and what is entered."""
+        with edit_readonly(field):
+            field.param.update(**values)
+
+    type_in(value="moon", value_input="moon")
+    assert field.error_state
+    type_in(value_input="90")
+    assert field.error_state
+    type_in(value_input="900")
+    assert (field.error_state, field.helper_text, state.refusal) == (False, "", "")
+    type_in(value="moon", value_input="moon")
+    # Enter is told before what was entered.
+    field.param.trigger("enter_pressed")
+    assert not field.error_state
+    type_in(value="moon", value_input="moon")
+    type_in(value="sun", value_input="sun")
+    assert "sun" in field.helper_text
 
 
 def test_a_refusal_has_the_units_and_names_of_the_page_and_keeps_its_other_words() -> (
@@ -416,6 +441,15 @@ def test_points_that_stand_for_a_preset_are_taken_as_they_stand() -> None:
         dialog._take(dialog.text.value, "the text")
         assert isinstance(held(state, name), tuple), state.refusal
     assert taken
+
+
+def test_a_small_cross_section_has_no_power_of_ten_in_its_field() -> None:
+    """A cross section was 3.14e-06 m²."""
+    state = of_scene("bar")
+    control = SettingControl("section", state)
+    assert (control.field.value, control.field.label[-3:]) == ("3.14", "mm²")
+    control.field.value = "0.05 cm2"
+    assert held(state, "section") == pytest.approx(5e-6)
 
 
 def test_a_number_is_read_in_each_unit_of_its_kind() -> None:

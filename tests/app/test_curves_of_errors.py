@@ -99,6 +99,14 @@ def test_curves_of_errors_are_named_at_their_ends_and_names_stay_apart() -> None
     assert max(names["x"]) < 0.9 * view.figure.x_range.end
 
 
+def test_names_lie_on_no_ring_of_the_answer(plot: Convergence) -> None:
+    """The name of an indicator that ends low stood half below it."""
+    glyphs = {each.name: each.glyph for each in plot.figure.renderers}
+    ring = glyphs["answer"]
+    outside = 0.5 * (ring.size + ring.line_width)
+    assert glyphs["names"].x_offset > outside + 2.0
+
+
 @pytest.mark.parametrize("end", [0.1, 0.02, 0.0101, 0.0099, 0.003, 1e-4])
 @pytest.mark.parametrize("size", ["12px", "19px"])
 def test_names_of_curves_lie_on_no_line_of_the_goal(

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import app.display
+import app.worker.runner
 from app.display import Display
 from app.frame import Frame
 from app.history import History
@@ -242,6 +243,23 @@ def test_a_run_that_follows_a_slider_is_compared_once_its_picture_is_seen(
     while runner.rest() is not None:
         runner.advance()
     assert runner.frame(Needs()).run.is_compared
+
+
+def test_a_first_picture_waits_for_a_reference_that_is_there_soon(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A bar was drawn ten times as far at first, as its first iterate moves little."""
+    start = Start(0, default_settings("bar"), math.inf)
+    runner = Runner(start, ReferenceCache(), lambda: False)
+    runner.advance()
+    assert not runner.is_presentable
+    runner.advance()
+    assert runner.is_presentable
+    assert runner.frame(Needs()).run.reference_moved is not None
+    monkeypatch.setattr(app.worker.runner, "SOON", 0.0)
+    runner = Runner(start, ReferenceCache(), lambda: False)
+    runner.advance()
+    assert runner.is_presentable
 
 
 def test_a_run_is_compared_with_others_of_its_scene_alone(answer: Frame) -> None:

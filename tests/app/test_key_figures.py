@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 import pytest
 
 from app.frame import Frame, Selection
-from app.messages import Needs
-from app.status import figures_line
+from app.messages import Needs, Start
+from app.state import default_settings
+from app.status import ON_ITS_WAY, figures_line
 from app.units import percent
 from app.worker.geometry import MOST_POINTS
+from app.worker.references import ReferenceCache
+from app.worker.runner import Runner
 from app.worker.sampling import MOST_INSTANTS, Sampler
 from solver.discrete.rope.wire_forces import wire_stresses
 from solver.files.amounts import number
@@ -95,6 +99,18 @@ def test_the_stress_of_a_bent_wire_is_drawn_where_it_is() -> None:
     assert set(elements) == set(range(6))
     _, _, drawn = frame.extras["stress"]
     assert drawn == pytest.approx(stress[geometry.parts, elements], rel=1e-5)
+
+
+def test_an_iterate_on_its_way_says_why_a_moved_side_is_elsewhere() -> None:
+    """Beside u = -41.6 um in its picture an arch had a movement of -66.5 um."""
+    for scene, is_moved in (("block", True), ("bar", False)):
+        start = Start(1, default_settings(scene), math.inf)
+        runner = Runner(start, ReferenceCache(), lambda: False)
+        runner.advance()
+        line = figures_line(runner.frame(Needs()), Selection())
+        assert (ON_ITS_WAY in line) is is_moved
+    _, frame = shown("block", Needs(), instants=9, elements=6, substructures=1)
+    assert ON_ITS_WAY not in figures_line(frame, Selection())
 
 
 def test_energy_dissipated_is_that_up_to_the_instant_of_its_figures() -> None:

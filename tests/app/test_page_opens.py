@@ -25,7 +25,7 @@ from app.lessons.catalogue import LESSONS, settings_of
 from app.messages import WHOLE, Needs, NewFrame, Order, Pace, Start
 from app.page import BARE, COMPACT, Page, open_page
 from app.server import PAGES, share_looks
-from app.state import PageState, default_settings
+from app.state import TABS, PageState, default_settings
 from app.status import status_line
 from app.views.parts import come_last, laid_out_alone
 from app.worker.references import ReferenceCache
@@ -206,6 +206,26 @@ def test_a_projected_tab_keeps_the_header_unless_the_bar_of_a_run_leads_back() -
     assert page.template.sx == COMPACT
     page.state.tab = "Live"
     assert page.template.sx == BARE
+
+
+def count_of(words: str, page: Page) -> int:
+    """Number of texts above the tab in sight, or in its status line, with words."""
+    texts = [str(each.object) for each in page._main.select(pn.pane.HTML)]
+    if page.state.tab == "Live":
+        texts.append(status_line(page.state))
+    return sum(words in text for text in texts)
+
+
+@pytest.mark.usefixtures("document")
+@pytest.mark.parametrize("tab", TABS)
+def test_a_refusal_is_told_once_on_whichever_tab_is_in_sight(tab: str) -> None:
+    """A refusal of an address stood in the status line of the tab Live alone."""
+    page = Page(PageState(default_settings("bar"), refusal="No moon.", tab=tab))
+    assert count_of("No moon.", page) == 1
+    page.state.refusal = "No sun."
+    assert (count_of("No sun.", page), count_of("No moon.", page)) == (1, 0)
+    page.state.refusal = ""
+    assert count_of("No sun.", page) == 0
 
 
 @pytest.mark.usefixtures("orders", "document")

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from bokeh.models import ColorBar
 from pictures import PHASES, coarse, frame_of, shown, small
 from views import frames_of
 
@@ -186,6 +187,24 @@ def test_other_views_show_every_instant(frame: Frame) -> None:
     assert all(np.isfinite(values).all() for _, values in paths_of(frame.run))
     _, _, values = frame.extras["stress"]
     assert values.shape == (len(frame.run.geometry.cells), len(frame.run.instants))
+
+
+@pytest.mark.parametrize("kind", [Stress, Thrust])
+def test_before_its_extra_is_there_a_picture_has_nothing_of_the_scene_before(
+    kind: type[Stress | Thrust],
+) -> None:
+    """Stress had the colour bar of wires of a rope under a wall of bricks."""
+    view = shown(frame_of(small("wall")), 1.0, kind)
+    frame = frame_of(small("bundle"))
+    view.update(replace(frame, extras={}), Selection(1.0), None)
+    bars = [each for each in view.figure.right if isinstance(each, ColorBar)]
+    assert len(bars) == (kind is Stress)
+    assert not any(bar.visible for bar in bars)
+    for name in ("stress", "thrust", "hinges"):
+        if name in view.sources:
+            assert not any(map(len, view.sources[name].data.values()))
+    view.update(frame, Selection(1.0), None)
+    assert all(bar.visible for bar in bars)
 
 
 @pytest.mark.parametrize(("name", "kind"), [("fault", Stress), ("bundle", Thrust)])

@@ -68,6 +68,17 @@ def test_figures_are_the_same_where_bokeh_does_not_check_their_values(
         settings.perform_document_validation.unset_value()
 
 
+def test_a_view_of_an_extra_has_none_of_the_scene_before() -> None:
+    """Singular values of a bar stood under a block until its own were there."""
+    bar = frames_of("bar")[2]
+    view = view_of(Spectra, bar)
+    shown(view, replace(bar, extras={}))
+    assert any(len(source.data["xs"]) for source in view.sources.values())
+    shown(view, replace(frames_of("block")[2], extras={}))
+    for source in view.sources.values():
+        assert not any(map(len, source.data.values()))
+
+
 @pytest.mark.parametrize("kind", VIEWS)
 def test_a_view_shows_each_frame_of_all_that_it_applies_to(kind: type[View]) -> None:
     # One view goes from scene to scene, as on the page.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from types import SimpleNamespace
@@ -24,6 +24,7 @@ from app.widgets import PlainText
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings.scene import Settings
+from solver.study.page import head_of, line_of
 
 LOADS = Question(("friction=0.2:0.4:3", "peak=600:900:2"), "dissipation")
 
@@ -328,6 +329,7 @@ class Done:
     is_over = True
     failure = ""
     progress = ""
+    lines: Sequence[str] = ()
 
     def __init__(self, *arguments: Any) -> None:
         link = f'<a href="{reports.PAGE}?scene=bar">a run</a>'
@@ -359,6 +361,37 @@ def test_a_report_is_read_with_its_files_and_its_links_lead_here(
     made.state.is_dark = True
     assert "color-scheme: dark" in made.page.object
     assert [file.filename for file in made.files] == ["proof.csv", "proof.html"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "row", "last"),
+    [
+        (
+            "Stability",
+            {"passed": "pass", "verdict": "right", "scene": "bar", "case": "soft"},
+            "bar, soft, right",
+        ),
+        (
+            "Proof",
+            {"holds": "holds", "case": "A rope", "quantity": "moment"},
+            "A rope, moment, holds",
+        ),
+    ],
+)
+def test_the_progress_of_a_table_is_told_in_words(
+    made: reports.Reports, kind: str, row: dict[str, str], last: str
+) -> None:
+    """Progress was a line of a console, without its head."""
+    made.kind.value = kind
+    shown, _ = reports.TABLES[kind]
+    line = line_of(dict.fromkeys(shown, "0") | row, shown)
+    made.job = job = Done()
+    job.is_over = False
+    job.lines = [head_of(shown), line, line]
+    job.progress = f"6 s: {line}"
+    made._started = kind
+    made.look()
+    assert made.progress.object == f"{kind}: 6 s: 2 done. The last one: {last}."
 
 
 def test_a_study_of_other_settings_says_so(made: reports.Reports) -> None:

@@ -15,6 +15,7 @@ from small_scenes import SMALL
 
 from solver import discrete
 from solver.commands.cli import main
+from solver.discrete.structure import Axes
 from solver.files.tables import Table, read_table
 from solver.scenes import CATALOGUE, discretise
 from solver.settings.values import SettingError
@@ -211,7 +212,7 @@ def test_a_loop_is_the_same_however_it_is_written(kind: str) -> None:
         ("points between thousands", "thousands with points"),
         (
             "units in capitals",
-            "Zeit in SEC, Weg in MM, Kraft in N, 4 points, from -500.25 to 2000",
+            "Zeit in SEC, Weg in MM, Kraft in N, 4 points, from −500.25 to 2000",
         ),
         ("inches and pounds", "t in s .no unit given., stroke in in, load in lbf"),
     ],
@@ -220,6 +221,34 @@ def test_messages_state_how_a_table_was_understood(kind: str, said: str) -> None
     message = loop_in(table_of(KINDS[kind]), AXES).message
     with pytest.raises(AssertionError, match=said):
         raise AssertionError(message)
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_a_loop_is_read_whose_head_has_the_titles_of_its_scene(scene: str) -> None:
+    """A loop of *Slip at the well* was taken for a path of the fluid."""
+    axes = CATALOGUE[scene].checked(SMALL[scene]).structure().axes
+    heads = ["time [s]"]
+    heads += [f"{title} [{unit}]" for title, unit in axes]
+    rows = "0,0,0\n0.5,1.5e6,1234.5e3\n1,2.25e6,2e6\n1.5,-1e6,-5e5\n"
+    table = table_of(",".join(heads) + "\n" + rows)
+    assert use_of(table, axes) is Use.LOOP
+    loop = loop_in(table, axes)
+    assert np.ptp(loop.displacement) == 3.25e6
+    assert "from −500000 to 2·10⁶" in loop.message
+
+
+@pytest.mark.parametrize(
+    ("heads", "axes"),
+    [
+        ("Zeit;Neigungswinkel [Grad];Federkraft [N]", (("Angle", "°"), ("Force", "N"))),
+        ("t;Krümmung [1/m];Drehmoment [Nm]", (("Bend", "1/m"), ("Moment", "N·m"))),
+        ("t;Gleitweg [m];Scherkraft [N]", (("Slip at the well", "m"), ("Force", "N"))),
+    ],
+)
+def test_german_heads_of_all_kinds_of_loops_are_read(heads: str, axes: Axes) -> None:
+    table = table_of(f"{heads}\n0;0;0\n0,5;1,5;2\n1;2,25;3\n1,5;-1;0,5\n")
+    assert use_of(table, axes) is Use.LOOP
+    assert loop_in(table, axes).displacement.tolist() == [0.0, 1.5, 2.25, -1.0]
 
 
 @pytest.mark.parametrize(
@@ -343,16 +372,16 @@ def test_the_axes_of_a_loop_are_those_of_its_structure(scene: str) -> None:
 def test_values_a_thousand_times_off_the_run_are_doubted() -> None:
     bare = loop_in(table_of(PLAIN.replace(" [mm]", "").replace(" [N]", "")), AXES)
     run = np.array(DISPLACEMENTS) * 1e-3, 2.0 * np.array(FORCES)
-    (doubt,) = bare.unit_doubts(*run)
+    (doubt,) = bare.doubts(*run)
     assert (
         "displacement has no unit, and taken in m it is 1000 times that of the run"
         in doubt
     )
     assert "if it is in mm, name that in the head, as in displacement [mm]" in doubt
     kilo = run[0] * 1e3, 1e3 * run[1]
-    (doubt,) = bare.unit_doubts(*kilo)
+    (doubt,) = bare.doubts(*kilo)
     assert "as in force [kN]" in doubt
-    assert loop_in(table_of(PLAIN), AXES).unit_doubts(*kilo) == []
+    assert loop_in(table_of(PLAIN), AXES).doubts(*kilo) == []
 
 
 SIZES = ["--set=elements=10", "--set=substructures=2", "--set=instants=11"]
@@ -432,3 +461,19 @@ def test_opening_a_file_reads_it_once_and_makes_no_problem(monkeypatch: Any) -> 
         made.file.value = text.encode()
         assert len(calls) == 1
         assert made.message.object
+
+
+def test_rows_without_times_are_doubted_where_a_run_stands_as_its_force_changes() -> (
+    None
+):
+    """A fit of an arch, whose weight comes first, found nothing and did not say why."""
+    displacement = np.array([0.0, 0.0, 1.0, 2.0])
+    force = np.array([0.0, 5.0, 4.0, 6.0])
+    loop = "displacement [m],force [N]\n0,0\n0,5\n1,4\n2,6\n"
+    (doubt,) = loop_in(table_of(loop), AXES).doubts(displacement, force)
+    assert "need their times" in doubt
+    assert not loop_in(table_of(loop), AXES).doubts(np.arange(4.0), force)
+    rows = loop.splitlines()
+    timed = "\n".join(f"{n},{row}" for n, row in enumerate(rows[1:]))
+    with_times = loop_in(table_of(f"time [s],{rows[0]}\n{timed}\n"), AXES)
+    assert not with_times.doubts(displacement, force)

@@ -271,3 +271,12 @@ def test_a_load_that_the_arch_cannot_carry_is_told():
 )
 def test_the_sentence_says_what_is_done_to_an_arch(changes, said):
     assert said in settings_of(**changes).sentence()
+
+
+@pytest.mark.parametrize(("abutment", "title"), [("down", "Settl"), ("apart", "Move")])
+def test_what_an_abutment_does_downwards_is_no_movement_but_a_settlement(
+    abutment, title
+):
+    """A movement of -42 um stood beside the arrow of a displacement of +42 um."""
+    (across, _), _ = settings_of(abutment=abutment).structure().axes
+    assert across.startswith(title)

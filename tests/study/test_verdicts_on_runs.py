@@ -148,6 +148,8 @@ def test_the_command_writes_a_table_and_a_page_that_stands_alone(
     assert "zero &lt;N&gt;" in page
     # On a phone each value stands beside its head.
     assert page.count('data-head="verdict">right<') == 2
+    # Where a row is wider than a window its words are not.
+    assert len(re.findall(r'class="more below" colspan="\d+"><div>', page)) == 2
     # On paper each page of a table begins with the heads.
     assert page.count("<thead>") == page.count("<table") == 3
     assert not re.search(r"https?:|src=|href|@import|<script|url\(", page)

@@ -366,7 +366,11 @@ class Arch(Bodies):
     @property
     def axes(self) -> Axes:
         """Titles and units of the loop."""
-        return ("Movement of the right abutment", "m"), ("Thrust", "N")
+        moved = "Movement of the right abutment"
+        if self.settles:
+            # Downwards, while its arrow in a picture has values that count upwards.
+            moved = "Settlement of the right abutment"
+        return (moved, "m"), ("Thrust", "N")
 
     def loop(self, problem: Problem) -> Loop:
         """Horizontal thrust over the displacement of the right abutment."""
