@@ -134,7 +134,7 @@ class Run:
     """Largest displacement of the drawn nodes in the reference, along x and y, shape
     (2,), m."""
     reference_seconds: float = float("nan")
-    """Run time of the incremental solver, s."""
+    """Run time of the incremental solver from settings to result, s."""
     mechanism: Floats | None = None
     """Displacement of the nodes as the structure begins to collapse, (n_nodes, 2), m,
     the size of a body at most; None where it does not."""

@@ -64,9 +64,10 @@ class Sampled:
 
 
 def spectra(sampled: Sampled, iterate: Iterate, needs: Needs) -> list[Floats]:
-    """Singular values of the friction force by substructure, over the largest.
+    """Singular values of the friction force by substructure, over the largest shown.
 
-    Each array has shape (n_values,), without unit.
+    Each array has shape (n_values,), without unit. Of many substructures some are
+    shown.
     """
     numbers = thinned(len(iterate.problem.substructures), MOST_SPECTRA)
     parts = decompositions(

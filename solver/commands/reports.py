@@ -83,7 +83,7 @@ def _add_stability(commands: Any) -> None:
         "scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all"
     )
     kinds = parser.add_mutually_exclusive_group()
-    kinds.add_argument("--quick", action="store_true", help="a quarter of the cases")
+    kinds.add_argument("--quick", action="store_true", help="a fifth of the cases")
     kinds.add_argument("--random", metavar="N", help="make N random runs instead")
     parser.add_argument("--seed", default=1, help="of the random runs")
 

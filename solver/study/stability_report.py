@@ -57,9 +57,9 @@ SHOWN = {
 """Columns on a console: head and width by name."""
 NOTES = (
     "A run passes if it comes to what is expected of it. Right is an answer that "
-    "breaks no law by more than 1e-8; of runs that are not certified also errors of "
-    "at most 1e-6, and of random runs errors of the contact force of at most the "
-    "accuracy.",
+    "breaks no law by more than 1e-8, or, if it is certified, by more than the "
+    "residual that it states, 1e-5 at most; of other runs also errors of at most "
+    "1e-6, and of random runs errors of the contact force of at most the accuracy.",
     "Laws: the largest violation of balance, held displacements, cuts, Signorini's and "
     "Coulomb's law at any place and instant, as a share of the largest contact force, "
     "or jump.",

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import gc
+import math
 import sys
 import weakref
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from small_scenes import SMALL
 
+from app.messages import Needs, Start
 from app.worker.references import ReferenceCache
+from app.worker.runner import Runner
 from solver.discrete import Problem
 from solver.reference.incremental import Reference, reference_of
 from solver.reference.solution import fingerprint
@@ -110,6 +114,25 @@ def test_a_reference_is_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
     for changes in ({}, {"k_scale": 2.0}, {"friction": 0.2}, {"acceleration": "none"}):
         references.of(*made("block", **changes), never)
     assert len(found) == 2
+
+
+def test_both_run_times_begin_with_the_making_of_the_problem(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    settings = made("block")[0]
+    runner = Runner(Start(1, settings, math.inf), ReferenceCache(), lambda: False)
+    alone = 1.0
+
+    def timed(problem: Problem, *arguments: Any) -> Reference:
+        return replace(reference_of(problem, *arguments), seconds=alone)
+
+    monkeypatch.setattr(sys.modules[ReferenceCache.__module__], "reference_of", timed)
+    while runner.rest() is not None:
+        runner.advance()
+    run = runner.frame(Needs()).run
+    assert run.is_compared
+    # The time of LATIN has it, too.
+    assert run.reference_seconds > alone
 
 
 def test_what_is_kept_keeps_no_problem_alive() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -136,6 +137,20 @@ def test_errors_in_a_case_are_reported_with_file_and_place(
     assert message.startswith("mine.toml: ")
     assert "\n" not in message
     assert not [word for word in words if word not in message], message
+
+
+def test_the_strength_at_which_a_glued_rod_slips_is_that_of_shear_lag() -> None:
+    case = cases_by_name()["elastic-bond"]
+    given = case.settings.values()
+    stiffness = given["young"] * given["section"]
+    decay = math.sqrt(given["tangential_stiffness"] / stiffness)
+    # Friction along the rod grows as sinh, and is largest at the loaded end.
+    strength = decay * given["peak"] * math.tanh(decay * given["length"])
+    assert f"Below {1e-6 * strength:.2f} MN/m of strength" in case.change
+    for share, slips in ((0.99, True), (1.01, False)):
+        changed = case.settings.replace(cohesion=share * strength)
+        slipped = reading("slipped_share")(finished_run(changed))
+        assert (slipped > 0.0) is slips
 
 
 def test_a_file_of_settings_alone_is_no_case(tmp_path: Path) -> None:
