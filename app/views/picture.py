@@ -43,8 +43,8 @@ class Picture:
         layout: Layout,
         factor: float,
         peaks: Mapping[str, float],
-        selected: str = "",
-        rests: Sequence[Rest] = (),
+        selected: str,
+        rests: Sequence[Rest],
     ) -> None:
         self.frame = frame
         self.column = column

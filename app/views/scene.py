@@ -149,7 +149,7 @@ class Scene(View):
         shown = frame
         if selection.stage == LOCAL:
             shown = self.state.before_linear(frame)
-        selected = selection.interface_of(run)
+        selected = run.interface(selection.interface)
         picture = Picture(
             shown,
             column,
