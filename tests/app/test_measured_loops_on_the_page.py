@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -190,6 +191,21 @@ def test_progress_has_titles_of_settings_and_sentences_keep_their_words() -> Non
     )
     sentence = "The loop is of no peak: friction changes nothing"
     assert tab.said(sentence) == sentence
+
+
+def test_a_loop_is_fitted_whatever_the_name_of_its_file() -> None:
+    state = PageState(bar(), tab="Fit")
+    tab = FitTab(state)
+    # It begins as an option does, and has more bytes than a system takes.
+    name = f"(1) {'Δ' * 200}.csv"
+    state.brought = replace(loop_of_a_run(bar(load="random")), source=name)
+    tab.chosen.value = ["friction"]
+    tab.start()
+    while tab.job is not None:
+        time.sleep(0.1)
+        tab.look()
+    assert "ΔΔΔ.csv: " in tab.progress.object
+    assert "goes one way 3 times" in tab.progress.object
 
 
 def test_a_fit_is_cancelled_or_refused_in_words_and_leaves_nothing() -> None:
