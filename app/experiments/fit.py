@@ -190,9 +190,12 @@ class FitTab(CommandTab):
     def use(self) -> None:
         """Run the fitted settings, rounded to six digits, on the live tab."""
         found = settings_from_toml(self.written[SETTINGS].decode())
+        fitted = found.changed(self._fitted[0])
         # More digits would only fill fields and addresses.
         rounded = {
-            name: float(f"{getattr(found, name):.6g}") for name in fittable(found)
+            name: float(f"{fitted[name]:.6g}")
+            for name in fittable(found)
+            if name in fitted
         }
         self.state.tab = TABS[0]
         self.state.adopt(found.replace(**rounded))

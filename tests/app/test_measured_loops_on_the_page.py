@@ -133,10 +133,11 @@ def test_the_loop_comes_with_the_frame_and_its_distance() -> None:
 
 
 def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
-    state = PageState(bar(friction=0.3), tab="Fit")
+    stiff = {"young": 210_123_456_789.0}
+    state = PageState(bar(friction=0.3, **stiff), tab="Fit")
     tab = FitTab(state)
     assert tab.start_button.disabled
-    state.brought = loop_of_a_run(bar(friction=0.37))
+    state.brought = loop_of_a_run(bar(friction=0.37, **stiff))
     assert tab.start_button.disabled
     tab.chosen.value = ["friction"]
     assert not tab.start_button.disabled
@@ -153,6 +154,8 @@ def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
     tab.use()
     assert state.tab == "Live"
     assert state.settings.friction == 0.37
+    # What was not fitted has all its digits.
+    assert state.settings.young == stiff["young"]
     state.param.update(tab="Fit", brought=None)
     assert tab.start_button.disabled
     assert "standard error" in tab.page.object
