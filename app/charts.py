@@ -27,6 +27,7 @@ from bokeh.palettes import Viridis256
 from bokeh.resources import Resources
 
 from app.templates import html
+from app.views.axis import edges
 from app.views.colors import REFERENCE
 from solver.arrays import Array
 from solver.files.amounts import unit_for
@@ -216,8 +217,8 @@ def overlay(chart: Chart) -> hv.Overlay:
         ys = chart.y_values
         if chart.scale.unit:
             title += f" ({chart.scale.unit})"
-        x_limits = edges(xs, chart.x)[[0, -1]]
-        y_limits = edges(ys, chart.y)[[0, -1]]
+        x_limits = cell_edges(xs, chart.x)[[0, -1]]
+        y_limits = cell_edges(ys, chart.y)[[0, -1]]
     else:
         elements = _of_panel(chart)
         # An empty array is joined, too, as there may be no curves.
@@ -264,21 +265,14 @@ def overlay(chart: Chart) -> hv.Overlay:
     )
 
 
-def edges(values: Array, axis: PanelAxis) -> Array:
+def cell_edges(values: Array, axis: PanelAxis) -> Array:
     """Edges of cells around n ascending values, halfway between, shape (n + 1,).
 
     On a logarithmic axis a cell ends half way between logarithms.
     """
-    at = values
     if axis.logarithmic:
-        at = np.log(values)
-    half = np.array([0.5])
-    if len(at) > 1:
-        half = np.diff(at) / 2.0
-    ends = np.concatenate([at[:1] - half[:1], at[:-1] + half, at[-1:] + half[-1:]])
-    if axis.logarithmic:
-        return np.exp(ends)
-    return ends
+        return np.exp(edges(np.log(values)))
+    return edges(values)
 
 
 def _ticks(axis: PanelAxis, values: Iterable[float]) -> list[Any] | Ticker:
@@ -436,8 +430,8 @@ def _cells(chart: Map, table: pd.DataFrame) -> hv.Rectangles:
     """Cells of a map about the rows of a table with columns x and y."""
     columns = np.searchsorted(chart.x_values, table["x"])
     rows = np.searchsorted(chart.y_values, table["y"])
-    x = edges(chart.x_values, chart.x)
-    y = edges(chart.y_values, chart.y)
+    x = cell_edges(chart.x_values, chart.x)
+    y = cell_edges(chart.y_values, chart.y)
     sides = {
         "left": x[columns],
         "bottom": y[rows],

@@ -257,6 +257,11 @@ class Frame:
         """
         return self.run.number, bool(self.run.reference), self.status is not None
 
+    @property
+    def place(self) -> int:
+        """Place in its run, from 1: the answer follows the last iterate."""
+        return self.iteration + self.is_answer
+
     def last(self, name: str) -> float:
         """The newest value of a scalar of the history; NaN without any."""
         values = self.history[name]
@@ -289,7 +294,7 @@ class Selection:
     phase: float = 0.75
     """The instant, as a share of the interval."""
     interface: str = ""
-    """Name of the selected interface."""
+    """Name of the selected interface (`Run.interface`)."""
     substructure: int | None = None
     """Index of the selected substructure, from 0; None is the last."""
     position: float | None = None
@@ -297,7 +302,3 @@ class Selection:
     stage: str = LINEAR
     """Stage up to which the iteration is shown, `LOCAL` or `LINEAR`; after the linear
     stage it is whole."""
-
-    def interface_of(self, run: Run) -> str:
-        """The selected interface of a run, or its default one."""
-        return run.interface(self.interface)

@@ -29,12 +29,10 @@ class History:
 
     def add(self, frame: Frame) -> None:
         """Insert a frame in order, replacing one of the same iterate."""
-        order = [_order(kept) for kept in self._frames]
-        index = bisect_left(order, _order(frame))
-        if index < len(order) and order[index] == _order(frame):
-            self._frames[index] = frame
-        else:
-            self._frames.insert(index, frame)
+        places = [kept.place for kept in self._frames]
+        index = bisect_left(places, frame.place)
+        replaced = places.count(frame.place)
+        self._frames[index : index + replaced] = [frame]
         while len(self._frames) > 2 and self._nbytes() > LIMIT:
             # Every other frame goes, but neither the first nor the last one, which is
             # seen.
@@ -50,8 +48,3 @@ class History:
 
     def _nbytes(self) -> int:
         return sum(kept.nbytes for kept in self._frames)
-
-
-def _order(frame: Frame) -> tuple[int, bool]:
-    """Sort key of a frame in its run: the answer follows the last iterate."""
-    return frame.iteration, frame.is_answer

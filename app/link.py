@@ -78,7 +78,7 @@ class Link:
         self._browser = browser
         self._location = pn.state.location
         self.query = query_of(shown_by(state))
-        browser.on_change("search", lambda name, old, new: new and self.go(new))
+        browser.on_change("search", lambda name, old, new: self.go(new))
         state.param.watch(
             lambda *events: self._write(), ["settings", "is_dragged", *SHARED]
         )
@@ -115,7 +115,12 @@ class Link:
         self._browser.tell(destination=query)
 
     def go(self, query: str) -> None:
-        """Show the state of an address, or open the page of a class."""
+        """Show the state of an address, or open the page of a class.
+
+        The browser tells an empty one before each (`LISTEN`, `browser.py`).
+        """
+        if not query:
+            return
         shown, refusal = read(query, self._state.settings)
         if room := shown["room"]:
             if room != self._state.room:

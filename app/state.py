@@ -331,9 +331,7 @@ class PageState(param.Parameterized):
             return
         frame = newest
         shown = None
-        # The answer has the number of the last iterate before it.
-        last = newest.iteration + newest.is_answer
-        if iteration is not None and iteration < last:
+        if iteration is not None and iteration < newest.place:
             shown = max(iteration, 1)
             frame = self.history.at(shown)
         with param.parameterized.batch_call_watchers(self):
@@ -464,7 +462,7 @@ class PageState(param.Parameterized):
             return
         run = self.frame.run
         names = run.surfaces
-        shown = self.selection.interface_of(run)
+        shown = run.interface(self.selection.interface)
         if shown in names:
             shown = names[(names.index(shown) + step) % len(names)]
             self.select(interface=shown)

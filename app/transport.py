@@ -370,14 +370,11 @@ class Transport:
 
     @property
     def _last(self) -> int:
-        """Number of the newest iterate.
-
-        An answer follows the last iterate of the search.
-        """
+        """Place of the newest frame; 0 without one."""
         newest = self._state.newest
         if newest is None:
             return 0
-        return newest.iteration + newest.is_answer
+        return newest.place
 
 
 def _button(

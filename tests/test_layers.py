@@ -36,7 +36,7 @@ LAYERS = [
 """Rooms of the solver; each may import itself and what stands before it. Problem and
 method stand before all that knows settings and scenes."""
 GRAPHICS = {"panel", "bokeh", "holoviews", "panel_material_ui", "pandas", "app"}
-ABOVE = {"method", "iteration", "solve", "slabs"}
+ABOVE = {"method", "run_cost", "stop_rules", "iteration", "solve", "slabs"}
 """Files of the method that put its parts to work."""
 
 

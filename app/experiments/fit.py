@@ -26,6 +26,9 @@ from solver.study.page import Panel, PanelAxis, PanelCurve
 
 DIGITS = 4
 """Digits of a value while a fit runs."""
+LONGEST = 60
+"""Largest number of letters of the name of a file, of up to four bytes each: systems
+take 255 bytes."""
 NO_LOOP = (
     "Open a measured loop: a table of {} and {}, with time if you have "
     "it. It is drawn here, and on the plot Loop of the tab Live beside the run."
@@ -69,8 +72,11 @@ class FitTab(CommandTab):
         if loop is None or not names:
             return None
         # The report names the file as its owner does.
-        file = re.sub(r"[^\w-]+", "-", Path(loop.source).stem) + ".csv"
-        arguments = ("fit", SETTINGS, "--with", file, "--vary", names, "--out", OUT)
+        stem = re.sub(r"[^\w-]+", "-", Path(loop.source).stem)
+        file = f"{stem[:LONGEST]}.csv"
+        # Behind a sign of equality a name may begin with a dash.
+        with_file = f"--with={file}"
+        arguments = ("fit", SETTINGS, with_file, "--vary", names, "--out", OUT)
         return arguments, {SETTINGS: dump(self.state.settings), file: loop.csv()}
 
     @property
@@ -184,9 +190,12 @@ class FitTab(CommandTab):
     def use(self) -> None:
         """Run the fitted settings, rounded to six digits, on the live tab."""
         found = settings_from_toml(self.written[SETTINGS].decode())
+        fitted = found.changed(self._fitted[0])
         # More digits would only fill fields and addresses.
         rounded = {
-            name: float(f"{getattr(found, name):.6g}") for name in fittable(found)
+            name: float(f"{fitted[name]:.6g}")
+            for name in fittable(found)
+            if name in fitted
         }
         self.state.tab = TABS[0]
         self.state.adopt(found.replace(**rounded))

@@ -73,7 +73,9 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
     selected = int(np.argmin(np.abs(columns - run.column(state.selection.phase))))
     slider = Slider(
         start=0,
-        end=len(columns) - 1,
+        # A slider has two ends, also where there is one instant alone.
+        end=max(len(columns) - 1, 1),
+        visible=len(columns) > 1,
         value=selected,
         title="Instant",
         # The text below says which instant it is.

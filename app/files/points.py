@@ -77,17 +77,19 @@ class CurveDialog:
     def update(self) -> None:
         """Show the points of the path, or those of its preset."""
         settings = self._state.settings
-        points = getattr(settings, self._name)
-        if isinstance(points, str):
-            points = settings.points(self._name)
+        points = settings.points(self._name)
         units = settings.curve_units(self._name)
         self._units = units_of_points(settings.scene, self._name, units)
         table = pd.DataFrame(np.array(points) / [unit.factor for unit in self._units])
+        if isinstance(getattr(settings, self._name), str):
+            # Those of a preset may have any number of digits.
+            table = _rounded(table)
         is_short = len(table) <= MOST_DRAGGED
         self._is_updating = True
         if self._figure is not None:
             x, y = table.to_numpy().T
-            self.source.data = {"x": x, "y": y}
+            self._known = {"x": x, "y": y}
+            self.source.data = dict(self._known)
             self._points.visible = is_short
             # A tool that is not active leaves the points where they are.
             self._figure.toolbar.active_tap = self._tool if is_short else None
@@ -131,12 +133,15 @@ class CurveDialog:
             if unit.name:
                 title += f" [{unit.name}]"
             heads.append(title)
-        return points.to_csv(header=heads, index=False, float_format="%.6g")
+        return points.to_csv(header=heads, index=False, float_format="%.10g")
 
     def _on_drag(self) -> None:
         if not self._is_updating:
             points = pd.DataFrame(dict(self.source.data), dtype=float)
             points["x"] = points["x"].clip(lower=0.0)
+            # What was not dragged keeps its digits.
+            is_known = points.isin(self._known)
+            points = points.where(is_known, _rounded(points))
             points = points.sort_values("x", kind="stable").drop_duplicates("x")
             self._take(self._table(points), "the plot")
 
@@ -156,6 +161,11 @@ class CurveDialog:
         self._state.adopt(changed)
         self._message.object = message
         self.update()
+
+
+def _rounded(points: pd.DataFrame) -> pd.DataFrame:
+    """Points with six digits, in their units."""
+    return points.map(lambda value: float(f"{value:.6g}"))
 
 
 def _widen(axis: Range1d, values: Array, margin: float) -> None:

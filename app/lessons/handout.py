@@ -33,7 +33,7 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
     address = address_for_others()
     if address:
         address += f"?lesson={lesson.name}"
-    picture = _drawn(Scene(state), state, lesson, WIDTH, HEIGHT)
+    picture = _drawn(Scene(state), state, lesson, WIDTH)
     kinds = [
         kind
         for kind in kinds_of(lesson, is_answered=True)
@@ -41,7 +41,7 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
     ]
     figures = {"picture": picture}
     for kind in kinds:
-        figures[kind.name] = _drawn(kind(state), state, lesson, WIDTH // 2 - 10, HEIGHT)
+        figures[kind.name] = _drawn(kind(state), state, lesson, WIDTH // 2 - 10)
     plots = [kind.name for kind in kinds]
     if curve is not None:
         blank = DrawnCurve(lesson)
@@ -76,12 +76,10 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
     )
 
 
-def _drawn(
-    view: View, state: PageState, lesson: Lesson, width: int, height: int
-) -> Any:
+def _drawn(view: View, state: PageState, lesson: Lesson, width: int) -> Any:
     """A new figure of a view, for paper."""
     figure = view.figure
-    figure.update(sizing_mode=None, width=width, height=height, toolbar_location=None)
+    figure.update(sizing_mode=None, width=width, height=HEIGHT, toolbar_location=None)
     if state.frame is not None:
         selection = replace(
             state.selection, phase=lesson.instant, interface=lesson.interface

@@ -255,7 +255,7 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
             x = -0.5 * float(layout.size[0] * layout.scale[0]) - 16.0
         return np.array([x, y]), "right"
     x = ends.max()
-    surroundings = layout.surroundings
+    surroundings = layout.canvas.surroundings
     if surroundings is not None and surroundings.place == "around":
         # Beside the ground, in which the arrows stand.
         x = max(x, 0.5 * float(layout.size[0] * layout.scale[0]))

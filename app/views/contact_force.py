@@ -75,7 +75,7 @@ class ContactForce(View):
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the contact forces along the selected interface."""
         run = frame.run
-        name = selection.interface_of(run)
+        name = run.interface(selection.interface)
         fields = frame.contact.get(name)
         # Where fields are large a frame has the interface that was selected then.
         if fields is None:
@@ -155,7 +155,7 @@ class ContactForce(View):
             self.draw("ghost", [], [], self.ghost_name)
             return
         run = ghost.run
-        name = selection.interface_of(run)
+        name = run.interface(selection.interface)
         positions = run.interfaces[name].positions
         column = run.column(selection.phase)
         curve = _curves(positions, ghost.contact.get(name), column)

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from bokeh.core.properties import value
 from bokeh.events import Tap
 from bokeh.models import FixedTicker, PrintfTickFormatter
 
@@ -112,7 +111,6 @@ class Convergence(ErrorPlot):
             "x y text text_color",
             x_offset=NAME,
             text_baseline="middle",
-            text_font=value("Roboto, sans-serif"),
             text_font_size=self.words,
         )
         self.mark({"stage": REFERENCE}, marker="dash", angle=0.5 * np.pi)
@@ -284,7 +282,7 @@ class Convergence(ErrorPlot):
     @property
     def words(self) -> str:
         """Type size of the names of curves, as CSS has it: that of the axes."""
-        return f"{self.type_size:g}px"
+        return self._type
 
     def _go_back(self, event: Any) -> None:
         """Show the iterate nearest to a tap."""

@@ -47,7 +47,7 @@ def hints_of(picture: Picture) -> Columns:
             # A long one has two lines, so that it ends within the picture.
             lines = textwrap.wrap(f"↖ {acts}", NARROW)
             texts.append("\n".join(lines))
-            right = layout.width - layout.origin[0]
+            right = layout.canvas.width - layout.origin[0]
             begin = right - layout.letter * max(map(len, lines)) - PADDING
             under = UNDER + 0.5 * (len(lines) - 1) * layout.row
             anchors.append(np.array([min(x + ASIDE, begin), 0.5 * top - under]))

@@ -42,7 +42,7 @@ def labels_of(picture: Picture) -> tuple[Columns, Columns]:
     """
     obstacles = Obstacles(picture)
     words = _words_of_loads(picture, obstacles)
-    if not picture.layout.is_bare:
+    if not picture.layout.canvas.is_bare:
         words += _name_of_ground(picture)
         words += _name_of_joint(picture, obstacles)
     if picture.description.tilt is not None:
@@ -71,7 +71,7 @@ def _words_of_loads(picture: Picture, obstacles: Obstacles) -> list[Word]:
             continue
         word = _word_of_load(picture, arrows, count)
         if layout.angle or layout.is_told_above(act, count):
-            above = layout.height - (rows + 0.5) * layout.row
+            above = layout.canvas.height - (rows + 0.5) * layout.row
             anchor = np.array([layout.origin[0], above])
             word = word._replace(anchor=anchor, align="center")
             rows += 1
@@ -179,7 +179,7 @@ def _slope(picture: Picture) -> Word:
 
 def _name_of_ground(picture: Picture) -> list[Word]:
     """Label of the ground of a case, if any."""
-    surroundings = picture.layout.surroundings
+    surroundings = picture.layout.canvas.surroundings
     if surroundings is None:
         return []
     edge = ground_edge(picture.layout, picture.factor)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import chain, product
 
@@ -59,49 +59,70 @@ LARGER = 1.5
 rows above."""
 
 
+@dataclass(frozen=True)
+class Canvas:
+    """Bodies to be laid out, and the figure that they are laid out in.
+
+    Attributes
+    ----------
+    geometry
+        The undeformed bodies.
+    is_bare
+        Whether the bodies are shown without loads.
+    type_size
+        Size of the letters, px.
+    width, height
+        Size of the figure, px.
+    surroundings
+        Surroundings of a case, or None.
+    """
+
+    geometry: Geometry
+    is_bare: bool
+    type_size: float
+    width: float
+    height: float
+    surroundings: Surroundings | None = None
+
+    @property
+    def is_upright(self) -> bool:
+        """Check whether the bodies stand upright in their surroundings."""
+        return self.surroundings is not None and self.surroundings.is_upright
+
+    @property
+    def has_ground(self) -> bool:
+        """Check whether the ground of a case is drawn."""
+        return self.surroundings is not None and not self.is_bare
+
+
 class Layout:
-    """Position and scale of the bodies in a figure of `width` times `height` px.
+    """Position and scale of the bodies on a `canvas`.
 
     Arrays have shape (2,), along x and y. The bodies have the `size` in m, length and
-    height as they are drawn; bare ones show no loads. `scale` is in px/m: only of rods
-    it differs along x and y. `origin` is the middle of their foot, px. An arrow is
-    `arrow` px long at its largest value, a letter of its words `letter` px wide, and a
-    line of them `row` px high; a body is about `body_height` m high;
-    the largest displacement takes `motion` px at most. Of each load `equals` are
-    equal, itself included; 0 where an earlier one has their words. Keys stand below
-    the bodies in `key_rows`, or at their left in a column of the width `column`, px, if
-    there are none. Words of loads on the left and right side are next to these, or
-    `in_rows` above all else.
+    height as they are drawn. `scale` is in px/m: only of rods it differs along x and
+    y. `origin` is the middle of their foot, px. An arrow is `arrow` px long at its
+    largest value, a letter of its words `letter` px wide, and a line of them `row` px
+    high; a body is about `body_height` m high; the largest displacement takes `motion`
+    px at most. Of each load `equals` are equal, itself included; 0 where an earlier one
+    has their words. Keys stand below the bodies in `key_rows`, or at their left in a
+    column of the width `column`, px, if there are none. Words of loads on the left and
+    right side are next to these, or `in_rows` above all else.
 
-    Bodies that stand upright, by the `surroundings` of a case, are laid out in a figure
+    Rods that stand upright, by the surroundings of a case, are laid out in a figure
     that is turned by a quarter to the right: their left end is on top. `angle` is that
     of this turn, rad.
     """
 
-    def __init__(
-        self,
-        geometry: Geometry,
-        is_bare: bool,
-        type_size: float,
-        width: float,
-        height: float,
-        key_rows: int,
-        surroundings: Surroundings | None = None,
-        *,
-        in_rows: bool = False,
-    ) -> None:
-        self._geometry = geometry
-        self.is_bare = is_bare
+    def __init__(self, canvas: Canvas, key_rows: int, *, in_rows: bool = False) -> None:
+        self.canvas = canvas
         self.in_rows = in_rows
-        self.width = width
-        self.height = height
         self.key_rows = key_rows
-        self.surroundings = surroundings
-        self.letter = LETTER * type_size
+        self.letter = LETTER * canvas.type_size
         self.column = COLUMN * self.letter
-        self.row = ROW * type_size
+        self.row = ROW * canvas.type_size
+        geometry = canvas.geometry
         self.description = geometry.description
-        if is_bare:
+        if canvas.is_bare:
             self.description = replace(self.description, acts=())
         self.equals = counts_of_equals(self.description.acts)
         top = float(geometry.nodes[:, 1].max())
@@ -115,10 +136,10 @@ class Layout:
         self.angle = 0.0
         # Rods alone are drawn level, whatever they are.
         is_rod = self.description.height is None
-        if surroundings is not None and surroundings.is_upright and is_rod:
+        if canvas.is_upright and is_rod:
             self.angle = -0.5 * math.pi
-        self.arrow = min(max(0.19 * height, 18.0), 38.0)
-        self.deepest = max(DEEPEST, 0.1 * height)
+        self.arrow = min(max(0.19 * canvas.height, 18.0), 38.0)
+        self.deepest = max(DEEPEST, 0.1 * canvas.height)
         # Words of a load on top that have no room beside its arrows stand over them.
         self._has_words_over = False
         self._fit()
@@ -146,7 +167,7 @@ class Layout:
         if description.height is None:
             # Rods have no height: they are drawn as thick as there is room, up to a
             # limit.
-            thickness = max(THICK, SHARE * self.height)
+            thickness = max(THICK, SHARE * self.canvas.height)
             scale[1] = min(scale[1], thickness * description.bodies / top)
         else:
             scale[:] = scale.min()
@@ -157,7 +178,7 @@ class Layout:
         self.origin = corner + 0.5 * rest - low * scale
         if self.angle:
             along, across = self.origin
-            self.origin = np.array([across, self.height - along])
+            self.origin = np.array([across, self.canvas.height - along])
         self.motion = motion
 
     def _free(self) -> tuple[Array, Array, Array]:
@@ -166,7 +187,7 @@ class Layout:
         All are along and across the bodies, px; the corner is the lower one.
         """
         left, right, below, above = self._margins()
-        figure = np.array([self.width, self.height])
+        figure = np.array([self.canvas.width, self.canvas.height])
         if not self.key_rows:
             left += self.column
         # Upright bodies have words in rows above them, and keys below them.
@@ -206,7 +227,8 @@ class Layout:
         if not act.where.startswith("body"):
             return False
         places = act.points_at(0)[:, None] * self.size
-        corners = self._geometry.nodes[self._geometry.cells]
+        geometry = self.canvas.geometry
+        corners = geometry.nodes[geometry.cells]
         is_right_above = places >= corners.min(axis=1)
         is_left_below = places <= corners.max(axis=1)
         return bool(np.any(np.all(is_right_above & is_left_below, axis=-1)))
@@ -224,18 +246,18 @@ class Layout:
             for side, outward in OUTWARD.items():
                 if np.max(footing.outward @ outward) > 0.5:
                     yield side, FOOTING
-        if self.surroundings is not None:
+        surroundings = self.canvas.surroundings
+        if surroundings is not None:
             yield "bottom", GROUND + 16.0
-            if self.surroundings.place == "around":
+            if surroundings.place == "around":
                 yield "top", GROUND + 16.0
 
     def _room_of_loads(self) -> Iterator[tuple[str, float]]:
         """Space for loads and labels by side of the bodies, px."""
-        is_upright = self.surroundings is not None and self.surroundings.is_upright
         for act, count in zip(self.description.acts, self.equals, strict=True):
             if act.side not in SIDES:
                 continue
-            if is_upright:
+            if self.canvas.is_upright:
                 yield act.side, self.arrow + 10.0
             elif act.side in BESIDE:
                 yield from self._room_beside(act, count)
@@ -272,7 +294,7 @@ class Layout:
         if is_at_left(places):
             room = across.min()
         else:
-            room = self.width - across.max()
+            room = self.canvas.width - across.max()
         if is_aside(act):
             room -= LONGEST * self.arrow
         # A load that varies along its side has the values at both ends.
@@ -386,29 +408,21 @@ def counts_of_equals(acts: Sequence[Act]) -> list[int]:
 
 
 @lru_cache(maxsize=16)
-def layout_of(
-    geometry: Geometry,
-    is_bare: bool,
-    type_size: float,
-    width: float,
-    height: float,
-    surroundings: Surroundings | None = None,
-) -> Layout:
+def layout_of(canvas: Canvas) -> Layout:
     """The layout, with labels in rows or not, that shows bodies larger.
 
     Keys stand below or at the left, words beside the bodies or, if these become much
     larger, in rows above. Bare bodies have a single key, below them.
     """
-    size = type_size, width, height
-    if is_bare:
-        return Layout(geometry, is_bare, *size, 1, surroundings)
-    if surroundings is not None and surroundings.is_upright:
-        return Layout(geometry, is_bare, *size, 4, surroundings)
+    if canvas.is_bare:
+        return Layout(canvas, 1)
+    if canvas.is_upright:
+        return Layout(canvas, 4)
     rows = 1
-    if width < NARROW:
+    if canvas.width < NARROW:
         rows = 2
     layouts = [
-        Layout(geometry, is_bare, *size, key_rows, surroundings, in_rows=in_rows)
+        Layout(canvas, key_rows, in_rows=in_rows)
         for in_rows, key_rows in product((False, True), (rows, 0))
     ]
     return max(layouts, key=_worth)

@@ -43,8 +43,8 @@ class Picture:
         layout: Layout,
         factor: float,
         peaks: Mapping[str, float],
-        selected: str = "",
-        rests: Sequence[Rest] = (),
+        selected: str,
+        rests: Sequence[Rest],
     ) -> None:
         self.frame = frame
         self.column = column
@@ -116,11 +116,6 @@ class Picture:
         }
 
     @property
-    def _has_ground(self) -> bool:
-        """Check whether the ground of a case is drawn."""
-        return self.layout.surroundings is not None and not self.layout.is_bare
-
-    @property
     def is_of_any_shape(self) -> bool:
         """Check whether bodies have any shape, not only straight sides."""
         return self.description.footings is not None
@@ -133,7 +128,7 @@ class Picture:
     @property
     def is_around(self) -> bool:
         """Check whether the ground of a case is all around the bodies."""
-        surroundings = self.layout.surroundings
+        surroundings = self.layout.canvas.surroundings
         return surroundings is not None and surroundings.place == "around"
 
     @cached_property
@@ -142,7 +137,7 @@ class Picture:
 
         Shape (n, k, 2), px from the middle of the foot.
         """
-        if not self._has_ground:
+        if not self.layout.canvas.has_ground:
             return np.zeros((0, 4, 2))
         edge = ground_edge(self.layout, self.factor)
         low = edge[:, 1].min() - GROUND
@@ -171,7 +166,7 @@ class Picture:
         """All lines, the last on top; bare bodies have no bands of interfaces."""
         rims = _drawn(self._geometry.rims, self.nodes)
         strokes: Strokes = [(rims, EDGE, 1.4), (self._holds(), EDGE, 1.3)]
-        if not self.layout.is_bare:
+        if not self.layout.canvas.is_bare:
             strokes += self._bands()
         strokes.append((gapped(self.nodes[self._at_break]), ERROR, 3.0))
         for arrows in self.arrows:
@@ -270,7 +265,7 @@ class Picture:
         feet = self._follow(np.array([[0.0, 0.0], [length, 0.0]]))
         strokes = strokes_of(layout, self.factor, self.now, feet)
         for footing in self.description.footings or ():
-            if footing.kind == "support" and self._has_ground:
+            if footing.kind == "support" and self.layout.canvas.has_ground:
                 # The ground of the case is what supports the bodies.
                 continue
             points = footing.points * layout.size

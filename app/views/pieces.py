@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 import textwrap
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from bokeh.core.properties import value
 from bokeh.events import Tap
 
 from app.frame import LINEAR, LOCAL, Frame, Selection
@@ -81,7 +81,6 @@ class PiecesView(ExtraView):
             "x y text",
             text_color=WRITTEN[self.state.is_dark],
             text_font_size=TEXT,
-            text_font=value("Roboto, sans-serif"),
             text_baseline="top",
         )
         marks = {
@@ -96,22 +95,22 @@ class PiecesView(ExtraView):
         self._scene = ""
         self._tapped: int | None = None
         self._placed: PlacedPieces | None = None
-        self._last: tuple[Pieces, Frame, Selection] | None = None
+        self._names: Sequence[str] = ()
         plot.on_event(Tap, self._tap)
-        self.follow_size(WIDTH, HEIGHT, self._show_last)
+        self.follow_size(WIDTH, HEIGHT, self._show_again)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the pieces of a frame, or nothing if the frame has none."""
+        self._shown = frame, selection, ghost
         super().update(frame, selection, ghost)
         if "pieces" not in frame.extras:
-            self._last = None
             for name, source in self.sources.items():
                 self.fill(name, **{column: [] for column in source.data})
 
     def _show(self, extra: Pieces, frame: Frame, selection: Selection) -> None:
-        if self._last is None or self._last[0].names != extra.names:
+        if self._names != extra.names:
             self._tapped = None
-        self._last = extra, frame, selection
+        self._names = extra.names
         stage = extra.stages[selection.stage]
         shown = frame.run.column(selection.phase)
         column = int(np.abs(extra.columns - shown).argmin())
@@ -135,7 +134,7 @@ class PiecesView(ExtraView):
         width, height = self.room
         self._figure.x_range.end = width
         self._figure.y_range.end = height
-        size = float(self._type.removesuffix("px"))
+        size = self.type_size
         letter = LETTER * size
         below = math.ceil(min(KEYS * letter / width, 2.0))
         line = FOOT * size
@@ -188,7 +187,7 @@ class PiecesView(ExtraView):
     def _show_selected(self, extra: Pieces, frame: Frame, selection: Selection) -> None:
         """Mark the joint that was tapped, or the one of the selected interface."""
         names = np.array(extra.names)
-        chosen = names == selection.interface_of(frame.run)
+        chosen = names == frame.run.interface(selection.interface)
         if self._tapped is not None:
             chosen = np.arange(len(names)) == self._tapped
         elif chosen.sum() > 1:
@@ -235,16 +234,12 @@ class PiecesView(ExtraView):
             texts.append("micro forces drawn across")
         return ", ".join(texts)
 
-    def _show_last(self) -> None:
-        """Show the last pieces again, if there are any."""
-        if self._last is not None:
-            self._show(*self._last)
-
     def _tap(self, event: Any) -> None:
         """Select the joint nearest to the pointer, and its piece."""
-        if self._last is None:
+        if self._shown is None or "pieces" not in self._shown[0].extras:
             return
-        extra, frame, _ = self._last
+        frame = self._shown[0]
+        extra = frame.extras["pieces"]
         middles = self._placed.quarters.mean(axis=1)
         nearest = int(np.hypot(*(middles - [event.x, event.y]).T).argmin())
         self._tapped = int(extra.joints[nearest])

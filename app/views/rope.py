@@ -82,7 +82,7 @@ class WireSection(ExtraView):
         place = unit_for(1.0, "m")(cut["position"])
         explain(self.bar, self.colors, f"stress, {unit.name}, at x = {place}")
         slips = cut["slips"][:, column]
-        selected = list(run.interfaces).index(selection.interface_of(run))
+        selected = list(run.interfaces).index(run.interface(selection.interface))
         chosen = cut["wires"] == selected
         # Slip shows before the selection.
         rings = np.where(chosen, ERROR, EDGE)
@@ -141,7 +141,8 @@ class AxialForces(ExtraView):
         exact = run.known("axial force")
         # Of a strand one wire is shown: the axes are those of the wires that are shown.
         key = (*frame.stage, *names)
-        self.x.hold(key, x, run.interfaces[selection.interface_of(run)].positions)
+        name = run.interface(selection.interface)
+        self.x.hold(key, x, run.interfaces[name].positions)
         ups = [curve.up for curve in exact]
         self.y.hold(key, axial["force"], *ups, stuck, [0.0], margin=0.05)
         curves = [(curve.across, curve.up[:, column]) for curve in exact]

@@ -14,7 +14,7 @@ from app.views.acts import Arrows, Rest
 from app.views.colors import BODY, EDGE, FORCE, GHOST, GROUND, HINT, KEYS, UNSEEN
 from app.views.hints import NONE, hints_of
 from app.views.labels import labels_of
-from app.views.layout import Layout, layout_of
+from app.views.layout import Canvas, Layout, layout_of
 from app.views.parts import bare
 from app.views.picture import Picture
 from app.views.view import View
@@ -143,13 +143,13 @@ class Scene(View):
         layout = self._layout_of(frame)
         self._scale(frame, layout)
         self._shown = frame, selection, ghost
-        plot.x_range.end = layout.width
-        plot.y_range.end = layout.height
+        plot.x_range.end = layout.canvas.width
+        plot.y_range.end = layout.canvas.height
         column = run.column(selection.phase)
         shown = frame
         if selection.stage == LOCAL:
             shown = self.state.before_linear(frame)
-        selected = selection.interface_of(run)
+        selected = run.interface(selection.interface)
         picture = Picture(
             shown,
             column,
@@ -187,13 +187,13 @@ class Scene(View):
 
     def _layout_of(self, frame: Frame) -> Layout:
         type_size = float(self.words.removesuffix("px"))
-        width, height = self.room
         surroundings = None
         if self.state.trade_case is not None:
             surroundings = self.state.trade_case.surroundings
-        return layout_of(
-            frame.run.geometry, self.is_bare, type_size, width, height, surroundings
+        canvas = Canvas(
+            frame.run.geometry, self.is_bare, type_size, *self.room, surroundings
         )
+        return layout_of(canvas)
 
     def _scale(self, frame: Frame, layout: Layout) -> None:
         """Choose the magnification and the scale of arrows for a new frame."""
@@ -219,7 +219,7 @@ class Scene(View):
         end = self._end_of(frame)
         if end is None:
             return layout.fitting(largest, self._factor)
-        key = frame.run.structure, layout.width, layout.height
+        key = frame.run.structure, layout.canvas.width, layout.canvas.height
         before = None
         if self._settled is not None and self._settled[0] == key:
             before = self._settled[1]

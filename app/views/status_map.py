@@ -44,7 +44,7 @@ class StatusMap(View):
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the status of every point at every instant."""
         run = frame.run
-        name = selection.interface_of(run)
+        name = run.interface(selection.interface)
         fields = frame.contact.get(name)
         if fields is None:
             return
@@ -101,7 +101,7 @@ class StatusMap(View):
 
 def _boundary(frame: Frame, selection: Selection) -> Floats:
     """Lines between different status: ends x0, y0, x1, y1, m and s, (4, n_lines)."""
-    name = selection.interface_of(frame.run)
+    name = frame.run.interface(selection.interface)
     if name not in frame.contact:
         return np.zeros((4, 0))
     status = frame.contact[name].status

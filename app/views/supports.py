@@ -46,7 +46,7 @@ def strokes_of(layout: Layout, factor: float, column: int, feet: Array) -> list[
                 lines.append(hatched(edge + shift + [-along, along], away))
             case "rollers":
                 lines.append(_rollers(edge, away))
-            case "support" if layout.surroundings is None or layout.is_bare:
+            case "support" if not layout.canvas.has_ground:
                 lines.append(hatched(_support(layout, factor, edge, hold.gap), away))
             case "spring":
                 wall = edge[0, 0] + WALL * away[0] + shift[0]
@@ -63,7 +63,7 @@ def ground_edge(layout: Layout, factor: float) -> Array:
             gap = hold.gap
     foot = layout.local(on_side("bottom", [0.0, 1.0]) * layout.size)
     edge = _support(layout, factor, foot, gap)
-    surroundings = layout.surroundings
+    surroundings = layout.canvas.surroundings
     if surroundings is None or surroundings.place == "around":
         return edge
     # Bodies that move stay on what is below them.

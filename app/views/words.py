@@ -33,8 +33,8 @@ def inside(layout: Layout, words: Sequence[Word]) -> list[Word]:
     for word in words:
         width = width_of(layout, word)
         left = width * LEFT_OF[word.align]
-        right = max(layout.width - width + left, left)
-        limits = [left, edge], [right, layout.height - edge]
+        right = max(layout.canvas.width - width + left, left)
+        limits = [left, edge], [right, layout.canvas.height - edge]
         inside.append(word._replace(anchor=np.clip(word.anchor, *limits)))
     return inside
 
@@ -75,13 +75,13 @@ def in_rows(layout: Layout, word: Word, most: int) -> list[Word]:
 
     Of two places equally far away the one farther from the middle comes first.
     """
-    outward = math.copysign(layout.row, word.anchor[1] - 0.5 * layout.height)
+    outward = math.copysign(layout.row, word.anchor[1] - 0.5 * layout.canvas.height)
     places = []
     edge = half_of_line(layout)
     for rows in range(1, most + 1):
         for shift in (rows * outward, -rows * outward):
             anchor = np.add(word.anchor, [0.0, shift])
-            if edge <= anchor[1] <= layout.height - edge:
+            if edge <= anchor[1] <= layout.canvas.height - edge:
                 places.append(word._replace(anchor=anchor))
     return places
 
@@ -104,5 +104,5 @@ def around(layout: Layout, word: Word, most: int) -> list[Word]:
 def is_inside(layout: Layout, word: Word) -> bool:
     """Check whether a label lies inside the figure."""
     low, high = box_of(layout, word)
-    size = [layout.width, layout.height]
+    size = [layout.canvas.width, layout.canvas.height]
     return bool(np.all(low >= 0.0) and np.all(high <= size))

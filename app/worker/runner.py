@@ -21,9 +21,9 @@ from solver.latin import (
     judged,
     record,
 )
-from solver.latin.end.cost import RunCost, run_cost
 from solver.latin.end.status import collapses
 from solver.latin.end.status_step import Certificate
+from solver.latin.run_cost import RunCost, run_cost
 from solver.reference.assembly import Interrupted, never
 from solver.reference.distance import Distance, distance_to
 from solver.reference.rules import States
@@ -129,7 +129,6 @@ class Runner:
         self.cost: RunCost = run_cost(
             problem,
             self._method,
-            settings.max_iterations,
             with_reference=has_reference(settings),
         )
         self._spent = time.perf_counter() - began

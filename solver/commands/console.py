@@ -21,7 +21,7 @@ from solver.files.paraview import PARAVIEW, contacts_of_series
 from solver.files.saved import settings_from_command
 from solver.files.tables import Table, read_table
 from solver.files.typed import typed_amount
-from solver.latin.end.cost import run_cost
+from solver.latin.run_cost import run_cost
 from solver.scenes.method import method_of
 from solver.scenes.remarks import remarks_before
 from solver.settings.scene import Settings
@@ -198,9 +198,7 @@ def announce(
     `run` is its name in the message, `limit` its time limit, s; a `reference` may be
     computed, too.
     """
-    cost = run_cost(
-        problem, method_of(settings), settings.max_iterations, with_reference=reference
-    )
+    cost = run_cost(problem, method_of(settings), with_reference=reference)
     if not cost.is_large:
         return
     line = f"{run} will take about {cost}"

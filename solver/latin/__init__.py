@@ -6,7 +6,7 @@ from solver.latin.direction.from_status import FromStatus
 from solver.latin.end.certified import Answer
 from solver.latin.end.status import Decision, Ending, Status
 from solver.latin.end.status_step import StatusStep
-from solver.latin.end.stop import Stop, StopState
+from solver.latin.end.stop import Stop
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iteration import iterations
 from solver.latin.method import Latin
@@ -15,6 +15,7 @@ from solver.latin.solve import Record, Solution, judged, record, solve
 from solver.latin.stages.linear import Full
 from solver.latin.stages.pgd import PGD
 from solver.latin.start import Nested
+from solver.latin.stop_rules import StopState
 
 __all__ = [
     "PGD",

@@ -135,8 +135,7 @@ class Iteration:
 
         Truncated bases would not hold what little of their fields is deformation.
         """
-        may_shift = latin.multiscale and self.linear.is_full
-        if may_shift and moves_rigidly(self._problem):
+        if latin.may_shift and moves_rigidly(self._problem):
             return RigidBodies(self._problem, self.k, from_rest=start is None)
         return None
 

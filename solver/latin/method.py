@@ -80,3 +80,8 @@ class Latin:
             stop=InstanceOf(Stop),
             threads=Count(1, 64),
         )
+
+    @property
+    def may_shift(self) -> bool:
+        """Check whether bodies are shifted as rigid ones where hinges are free."""
+        return self.multiscale and isinstance(self.linear, Full)

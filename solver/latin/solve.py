@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from solver.discrete.problem import Problem
 from solver.latin.end.certified import Answer
 from solver.latin.end.status import CANCELLED, Decision, Ending, Status
-from solver.latin.end.stop import StopState
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iteration import iterations
 from solver.latin.method import Latin
 from solver.latin.stages.blocks import one_blas_thread
+from solver.latin.stop_rules import StopState
 from solver.reference.assembly import never
 from solver.reference.distance import Distance
 

@@ -134,14 +134,7 @@ class ArchSettings(ShapedSettings):
         unit="m",
         applies=lambda settings: settings.fill > 0.0,
     )
-    unit_weight = LOAD.quantity(
-        2e4,
-        (0.0, 1e12),
-        (0.0, 1e5),
-        "Weight per volume of the voussoirs, which begins to act in the first quarter.",
-        unit="N/m^3",
-        places=("body",),
-    )
+    unit_weight = shared.unit_weight(2e4, "the voussoirs")
     voussoirs = BODY.count(31, (2, 1000), (3, 61), "Number of voussoirs.")
     span = BODY.quantity(
         ROUND,

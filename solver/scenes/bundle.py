@@ -109,14 +109,7 @@ class BundleSettings(ShapedSettings):
             settings.arrangement == "hexagon" and settings.has_plate
         ),
     )
-    unit_weight = LOAD.quantity(
-        0.0,
-        (0.0, 1e12),
-        (0.0, 1e5),
-        "Weight per volume of the wires, which acts from the first quarter on.",
-        unit="N/m^3",
-        places=("body",),
-    )
+    unit_weight = shared.unit_weight(0.0, "the wires")
     friction = redefined(ShapedSettings.param["friction"], 0.3)
     young = redefined(ShapedSettings.param["young"], 2e11)
     elements = redefined(

@@ -140,13 +140,9 @@ class MeshSettings(ShapedSettings):
         PRESSURES,
         applies=lambda settings: settings.has_condition("pressed"),
     )
-    unit_weight = LOAD.quantity(
+    unit_weight = shared.unit_weight(
         0.0,
-        (0.0, 1e12),
-        (0.0, 1e5),
-        "Weight per volume of all bodies, which begins to act in the first quarter.",
-        unit="N/m^3",
-        places=("body",),
+        "all bodies",
         applies=lambda settings: settings.materials == "same",
     )
     materials = BODY.curve(

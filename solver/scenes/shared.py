@@ -259,6 +259,23 @@ def size(
     return group.quantity(default, (1e-6, 1e4), slider, doc, title=title, unit="m")
 
 
+def unit_weight(
+    default: float,
+    bodies: str,
+    applies: Callable[[Any], bool] = lambda settings: True,
+) -> param.Number[float]:
+    """Define the weight per volume of bodies."""
+    return LOAD.quantity(
+        default,
+        (0.0, 1e12),
+        (0.0, 1e5),
+        f"Weight per volume of {bodies}, which begins to act in the first quarter.",
+        unit="N/m^3",
+        places=("body",),
+        applies=applies,
+    )
+
+
 def young(
     group: SettingGroup,
     default: float = 210e9,

@@ -195,14 +195,7 @@ class WallSettings(RectangleSettings):
         "element and are held upright.",
         title="Cap on the wall",
     )
-    unit_weight = LOAD.quantity(
-        2e4,
-        (0.0, 1e12),
-        (0.0, 1e5),
-        "Weight per volume of the bricks, which begins to act in the first quarter.",
-        unit="N/m^3",
-        places=("body",),
-    )
+    unit_weight = shared.unit_weight(2e4, "the bricks")
     friction = redefined(RectangleSettings.param["friction"], 0.6)
     head_friction = CONTACT.quantity(
         1.0,

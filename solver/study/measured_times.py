@@ -27,7 +27,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.cache import CACHE
 from solver.latin import Ending, Solution, judged, solve
-from solver.latin.end.cost import run_cost
+from solver.latin.run_cost import run_cost
 from solver.reference.assembly import NoReferenceError
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import reference_of
@@ -306,9 +306,8 @@ def _measured(
         form = forms_of(settings.replace(**changes))[FAST]
     except SettingError:
         return TimesAtSize(*at, message="there is no such size")
-    limit = form.max_iterations
     # An estimate decides before anything is run.
-    cost = run_cost(discretise(form), method_of(form), limit, with_reference=True)
+    cost = run_cost(discretise(form), method_of(form), with_reference=True)
     if cost.seconds > longest:
         return TimesAtSize(*at, message=f"left out: it would take about {cost}")
     try:

@@ -526,4 +526,4 @@ def test_an_arch_whose_weight_is_told_below_it_is_as_high_as_its_figure(
     view.update(spread, Selection(1.0), None)
     assert view.picture is not None
     layout = view.picture.layout
-    assert layout.size[1] * layout.scale[1] > 0.7 * layout.height
+    assert layout.size[1] * layout.scale[1] > 0.7 * layout.canvas.height

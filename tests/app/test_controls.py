@@ -405,6 +405,19 @@ def test_points_are_typed_dragged_and_opened_and_the_run_lasts_as_long_as_they_d
     assert held(state, "load")[-1] == (2.0, 0.0)
 
 
+def test_a_point_is_dragged_and_all_others_keep_their_digits() -> None:
+    steep = [(0.0, 0.0), (1.0, 0.0), (1.000001, 1234.5678), (2.0, 900.0)]
+    state = of_scene("bar")
+    state.change(load=steep)
+    dialog = CurveDialog("load", state)
+    dialog.update()
+    x, y = zip(*steep, strict=True)
+    dialog.source.data = {"x": list(x), "y": [*y[:-1], 800.123456]}
+    assert held(state, "load") == (*steep[:-1], (2.0, 800.123))
+    dialog.text.value = dialog.text.value.replace("800.123", "700")
+    assert held(state, "load") == (*steep[:-1], (2.0, 700.0))
+
+
 def test_a_path_has_a_button_to_edit_its_points_as_long_as_it_has_points() -> None:
     state = of_scene("bar")
     control = SettingControl("load", state)

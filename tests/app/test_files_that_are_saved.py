@@ -206,6 +206,22 @@ def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
     assert [view.figure.height for view in views] == before
 
 
+@pytest.mark.parametrize(("instants", "is_seen"), [(1, False), (2, True)])
+def test_the_offline_page_has_a_slider_where_there_is_an_instant_to_choose(
+    instants: int, is_seen: bool, caplog: pytest.LogCaptureFixture
+) -> None:
+    values = SMALLEST["bar"] | {"instants": instants, "load": "ramp"}
+    settings = default_settings("bar").replace(**values)
+    frame = frames.frame_of(settings, Needs(extras=frozenset()), ends=False)
+    assert len(frame.run.instants) == instants
+    state = PageState(settings, frame=frame, newest=frame)
+    text = offline_page(state, [Scene(state), Timeline(state)])
+    slider = text.partition('"name":"Slider"')[2].partition('"name":"Div"')[0]
+    assert ('"visible":false' in slider) != is_seen
+    # Bokeh logs a slider both of whose ends are one.
+    assert not caplog.records
+
+
 @pytest.mark.parametrize("scene", ["block", "rope", "wall", "arch", "belt", "mesh"])
 def test_the_offline_page_is_made_of_every_kind_of_scene(scene: str) -> None:
     settings = default_settings(scene).replace(**SMALLEST[scene])

@@ -105,7 +105,7 @@ def test_words_of_a_pressure_have_a_row_of_their_own_where_no_load_leaves_room_b
     (pressure,) = boxes_of_words(view)
     places = shafts(picture_of(view))
     assert not meet(pressure[1], places, places)
-    assert pressure[1][1, 1] < view.picture.layout.height + 3.0  # type: ignore[union-attr]
+    assert pressure[1][1, 1] < view.picture.layout.canvas.height + 3.0  # type: ignore[union-attr]
 
 
 def test_words_stand_above_bodies_that_they_would_leave_no_room_beside() -> None:

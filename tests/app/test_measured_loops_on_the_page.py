@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -132,10 +133,11 @@ def test_the_loop_comes_with_the_frame_and_its_distance() -> None:
 
 
 def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
-    state = PageState(bar(friction=0.3), tab="Fit")
+    stiff = {"young": 210_123_456_789.0}
+    state = PageState(bar(friction=0.3, **stiff), tab="Fit")
     tab = FitTab(state)
     assert tab.start_button.disabled
-    state.brought = loop_of_a_run(bar(friction=0.37))
+    state.brought = loop_of_a_run(bar(friction=0.37, **stiff))
     assert tab.start_button.disabled
     tab.chosen.value = ["friction"]
     assert not tab.start_button.disabled
@@ -152,6 +154,8 @@ def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
     tab.use()
     assert state.tab == "Live"
     assert state.settings.friction == 0.37
+    # What was not fitted has all its digits.
+    assert state.settings.young == stiff["young"]
     state.param.update(tab="Fit", brought=None)
     assert tab.start_button.disabled
     assert "standard error" in tab.page.object
@@ -190,6 +194,21 @@ def test_progress_has_titles_of_settings_and_sentences_keep_their_words() -> Non
     )
     sentence = "The loop is of no peak: friction changes nothing"
     assert tab.said(sentence) == sentence
+
+
+def test_a_loop_is_fitted_whatever_the_name_of_its_file() -> None:
+    state = PageState(bar(), tab="Fit")
+    tab = FitTab(state)
+    # It begins as an option does, and has more bytes than a system takes.
+    name = f"(1) {'Δ' * 200}.csv"
+    state.brought = replace(loop_of_a_run(bar(load="random")), source=name)
+    tab.chosen.value = ["friction"]
+    tab.start()
+    while tab.job is not None:
+        time.sleep(0.1)
+        tab.look()
+    assert "ΔΔΔ.csv: " in tab.progress.object
+    assert "goes one way 3 times" in tab.progress.object
 
 
 def test_a_fit_is_cancelled_or_refused_in_words_and_leaves_nothing() -> None:

@@ -73,7 +73,7 @@ def test_what_is_seen_first_of_a_scene_slips(name: str) -> None:
     while runner.status is None:
         runner.advance()
     frame = runner.frame(Needs(frozenset({"axial force"})))
-    interface = Selection().interface_of(frame.run)
+    interface = frame.run.interface(Selection().interface)
     assert frame.contact[interface].status.any()
     if name == "rope":
         assert list(frame.extras["axial force"]["names"]) == [interface]

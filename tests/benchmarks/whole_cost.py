@@ -1,4 +1,4 @@
-"""Cost of whole runs, beside the estimate of `solver.latin.end.cost`.
+"""Cost of whole runs, beside the estimate of `solver.latin.run_cost`.
 
 `python tests/benchmarks/whole_cost.py`
 """
@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from solver.cache import CACHE
-from solver.latin.end.cost import run_cost
+from solver.latin.run_cost import run_cost
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -51,9 +51,8 @@ def expected(settings: Settings) -> tuple[float, float, float]:
     """Estimate seconds and MB of a run, and seconds of its reference."""
     problem = discretise(settings)
     method = method_of(settings)
-    most = settings.max_iterations
-    alone = run_cost(problem, method, most, with_reference=False)
-    beside = run_cost(problem, method, most, with_reference=True)
+    alone = run_cost(problem, method, with_reference=False)
+    beside = run_cost(problem, method, with_reference=True)
     return alone.seconds, alone.memory / 1e6, beside.reference
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from pages import ANSWER, button, close_dialog, field, figures, go, is_solved
+from pages import ANSWER, button, close_dialog, field, figure, figures, go, is_solved
 from playwright.sync_api import Page, expect
 
 from app.state import default_settings
@@ -13,6 +13,8 @@ from solver.study.scene_run import finished_run
 
 SIZES = {"elements": 20, "instants": 21, "substructures": 1}
 QUERY = "&".join([f"{name}={number}" for name, number in SIZES.items()])
+LAST = 5
+"""Number of the figure of the last of four cards."""
 BUSY = "() => { window.idle = requestIdleCallback; requestIdleCallback = () => {} }"
 IDLE = "() => { requestIdleCallback = window.idle }"
 """Scripts that have a browser never be idle, and be as it was."""
@@ -42,6 +44,13 @@ def test_a_case_is_opened_by_its_picture_and_left_by_back(page: Page) -> None:
     expect(page).to_have_url(re.compile("case="))
     expect(field(page, "Peak load")).to_have_count(0)
     is_solved(page)
+    # In a high window the last of four cards stands above the time line.
+    page.set_viewport_size({"width": 1280, "height": 900})
+    expect(figure(page, LAST)).to_be_visible()
+    card = figure(page, LAST).bounding_box()
+    times = figure(page, 1).bounding_box()
+    assert card["y"] + card["height"] < times["y"] + 1.0
+    page.set_viewport_size({"width": 1280, "height": 720})
     page.go_back()
     expect(heading).to_have_count(0)
     expect(field(page, "Peak load")).to_have_value("900")

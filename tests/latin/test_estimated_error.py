@@ -23,10 +23,11 @@ from solver.latin import (
     StopState,
     iterations,
     judged,
+    stop_rules,
 )
-from solver.latin.end import status, stop
+from solver.latin.end import status
 from solver.latin.end.estimate import ErrorEstimate
-from solver.latin.end.stop import StallCheck
+from solver.latin.stop_rules import StallCheck
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
@@ -147,7 +148,7 @@ def test_seconds_include_all_that_the_stop_rules_take(
         now += 100.0
         return now
 
-    monkeypatch.setattr(stop, "time", SimpleNamespace(perf_counter=clock))
+    monkeypatch.setattr(stop_rules, "time", SimpleNamespace(perf_counter=clock))
     settings = small("bar")
     found = list(judged(discretise(settings), method_of(settings)))
     rules = [verdict.seconds - iterate.seconds for iterate, verdict in found]
