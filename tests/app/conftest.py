@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from frames import arch, ran
 from pictures import frame_of, shown, small
 
 from app.frame import Frame
@@ -30,3 +31,10 @@ def scene(page_scene: Scene) -> Scene:
     page_scene.lay_out(WIDTH, HEIGHT)
     page_scene.update(*page_scene._shown)  # type: ignore[misc]
     return page_scene
+
+
+@pytest.fixture(scope="module")
+def spread() -> Frame:
+    """An arch whose abutments have moved apart."""
+    settings = arch(displacement=1e-3, abutment_load="later", finish="at-once")
+    return ran(settings)

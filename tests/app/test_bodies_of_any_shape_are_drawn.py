@@ -7,27 +7,24 @@ from dataclasses import replace
 from itertools import product
 from types import SimpleNamespace
 
-import frames
 import numpy as np
 import pytest
 import shaped_bodies
-from pictures import boxes_of_words, meet, shown
+from frames import arch, ran
+from pictures import shown
 from scipy.spatial import Delaunay
 from small_scenes import SMALL
 
 from app.frame import Extremes, Frame, Selection
 from app.lessons.catalogue import CASES
-from app.messages import Needs
 from app.state import PageState, default_settings
 from app.status import figures_line
 from app.views.inside import Thrust
 from app.views.scene import Scene
 from app.views.supports import hatched
-from app.views.timeline import paths_of
 from app.worker.cells import BAND, MOST_CELLS, Drawing, drawings_of, joined
 from solver.discrete import Bodies, Body, Held, Lattice, Mesh, discretise
 from solver.scenes import CATALOGUE
-from solver.settings.scene import Settings
 
 
 def areas(cells: np.ndarray, positions: np.ndarray) -> np.ndarray:
@@ -147,24 +144,6 @@ def test_a_belt_is_a_band_that_lies_on_its_drum() -> None:
     assert np.array_equal(drawing.numbers[:count], drawing.numbers[count:])
 
 
-def ran(settings: Settings, *, ends: bool = True) -> Frame:
-    """Frame with which a run ends, or that of its second iterate."""
-    needs = Needs(frozenset({"thrust", "stress"}), readings=("hinges@0.5",))
-    return frames.frame_of(settings, needs, ends=ends)
-
-
-def arch(**changes: object) -> Settings:
-    few = {"voussoirs": 12, "instants": 21, **changes}
-    return default_settings("arch").replace(**few)
-
-
-@pytest.fixture(scope="module")
-def spread() -> Frame:
-    """An arch whose abutments have moved apart."""
-    settings = arch(displacement=1e-3, abutment_load="later", finish="at-once")
-    return ran(settings)
-
-
 def test_the_line_of_thrust_lies_in_the_arch_and_carries_its_weight(
     spread: Frame,
 ) -> None:
@@ -255,22 +234,6 @@ def test_an_arch_that_falls_shows_by_which_mechanism() -> None:
     assert np.allclose(away[is_held], 0.0, atol=0.01)
 
 
-def test_the_selected_joint_is_named_beside_it(spread: Frame) -> None:
-    state = PageState(spread.run.settings, frame=spread)
-    view = Scene(state)
-    _ = view.figure
-    view.update(spread, Selection(0.5, interface="crown"), None)
-    picture = view.picture
-    assert picture is not None
-    low, high = dict(boxes_of_words(view))["crown"]
-    halo = picture.page(picture.halo)
-    assert low[0] < halo[:, 0].mean() < high[0]
-    assert not meet((low, high), halo.min(axis=0), halo.max(axis=0))
-    (weight,) = [each for each in picture.arrows if each.act.where == "body"]
-    shaft = picture.page(np.concatenate(weight.lines))
-    assert not meet((low, high), shaft.min(axis=0), shaft.max(axis=0))
-
-
 def test_hatches_of_a_round_support_lie_behind_it() -> None:
     angles = np.linspace(0.0, 2.0 * np.pi, 41)
     outward = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -278,102 +241,6 @@ def test_hatches_of_a_round_support_lie_behind_it() -> None:
     radii = np.hypot(*strokes[np.isfinite(strokes[:, 0])].T)
     assert radii.max() < 100.0 + 1e-9
     assert radii.min() < 94.0
-
-
-CROWDED = {
-    "arch": arch(live=2000.0, fill=20e3),
-    "bundle": default_settings("bundle").replace(elements=4, instants=9),
-    "wall": CASES["settling-ground"].settings,
-}
-
-
-@pytest.fixture(scope="module", params=CROWDED)
-def crowded(request: pytest.FixtureRequest) -> Frame:
-    return ran(CROWDED[request.param], ends=False)
-
-
-@pytest.mark.parametrize("size", [(950.0, 190.0), (420.0, 360.0), (380.0, 180.0)])
-def test_words_of_many_loads_lie_apart_and_leave_handles_free(
-    crowded: Frame, size: tuple[float, float]
-) -> None:
-    view = shown(crowded, 0.0)
-    view.lay_out(*size)
-    for phase in (0.0, 0.3, 0.5, 0.75, 1.0):
-        view.update(crowded, Selection(phase), None)
-        boxes = [box for _, box in boxes_of_words(view)]
-        marks = view.sources["marks"].data
-        handles = np.stack([marks["x"], marks["y"]], axis=1)
-        for index, box in enumerate(boxes):
-            for other in boxes[:index]:
-                assert not meet(box, other[0], other[1])
-            assert not meet(box, handles - 3.0, handles + 3.0)
-
-
-def test_equal_loads_have_one_word() -> None:
-    frame = ran(CROWDED["bundle"], ends=False)
-    acts = frame.run.geometry.description.acts
-    bands = [act for act in acts if act.where.startswith("band")]
-    assert len(bands) > 3
-    texts = [text for text, _ in boxes_of_words(shown(frame, 0.5))]
-    assert sum(text.endswith(" each") for text in texts) == 1
-    assert sum(text.startswith("F = ") for text in texts) == 2
-    assert shown(frame, 0.5).picture.layout.equals.count(len(bands)) == 1  # type: ignore[union-attr]
-    # Beside the time line they are told apart by their places.
-    names = [title.partition(" = ")[0] for title, _ in paths_of(frame.run)]
-    assert sorted(names) == ["F (band)", "F (plate)", "u"]
-
-
-def test_the_weight_of_an_arch_is_read_at_its_arrow() -> None:
-    view = shown(ran(arch(), ends=False), 0.5)
-    view.lay_out(420.0, 360.0)
-    view.update(view._shown[0], Selection(0.5), None)  # type: ignore[index]
-    picture = view.picture
-    assert picture is not None
-    (weight,) = (each for each in picture.arrows if each.act.side == "body")
-    (box,) = (box for text, box in boxes_of_words(view) if text[0] == "W")
-    tail, head = picture.page(weight.lines[0])
-    assert head[0] < box[0, 0] < head[0] + 20.0
-    assert head[1] < box[:, 1].mean() < tail[1]
-
-
-def test_the_weight_of_a_wall_is_read_beside_it_and_not_at_its_pressure() -> None:
-    frame = ran(default_settings("wall").replace(instants=9), ends=False)
-    view = shown(frame, 0.5)
-    view.lay_out(950.0, 220.0)
-    view.update(frame, Selection(0.5), None)
-    assert view.picture is not None
-    corners = view.picture.page(view.picture.nodes)
-    (box,) = (box for text, box in boxes_of_words(view) if text[0] == "W")
-    assert box[1, 0] < corners[:, 0].min()
-    assert corners[:, 1].min() < box[:, 1].mean() < corners[:, 1].max()
-
-
-@pytest.mark.parametrize("interface", ["left flank", "right flank"])
-def test_the_name_of_a_joint_in_a_notch_lies_beside_its_end_and_on_no_body(
-    interface: str,
-) -> None:
-    settings = default_settings("mesh").replace(mesh="dovetail", instants=9)
-    frame = ran(settings, ends=False)
-    view = shown(frame, 0.5)
-    view.lay_out(430.0, 360.0)
-    view.update(frame, Selection(0.5, interface), None)
-    picture = view.picture
-    assert picture is not None
-    (box,) = (box for text, box in boxes_of_words(view) if text == interface)
-    corners = picture.page(picture.nodes[frame.run.geometry.cells])
-    assert not meet(box, corners.min(axis=1), corners.max(axis=1))
-    top = picture.page(picture.halo)[:, 1].argmax()
-    end = picture.page(picture.halo)[top]
-    assert np.hypot(*(np.clip(end, *box) - end)) < 30.0
-
-
-def test_the_words_of_a_weight_have_a_line_to_it_on_a_phone() -> None:
-    frame = ran(default_settings("wall").replace(instants=9), ends=False)
-    view = shown(frame, 0.5)
-    view.lay_out(390.0, 240.0)
-    for phase in (0.3, 0.5, 0.75, 1.0):
-        view.update(frame, Selection(phase), None)
-        assert len(view.sources["leaders"].data["xs"]) == 1
 
 
 def test_an_end_that_is_moved_at_an_angle_has_one_arrow_along_its_way() -> None:
@@ -438,33 +305,6 @@ def test_the_ground_of_a_case_is_all_that_supports_bodies_of_any_shape(
     assert bool(len(hatches)) == bool(clamps)
 
 
-def test_the_name_of_a_joint_lies_on_no_body_where_one_end_is_free() -> None:
-    frame = ran(default_settings("mesh"), ends=False)
-    view = shown(frame, 0.5)
-    view.lay_out(950.0, 230.0)
-    for name in frame.run.surfaces:
-        view.update(frame, Selection(0.5, interface=name), None)
-        picture = view.picture
-        assert picture is not None
-        corners = picture.page(picture.nodes[frame.run.geometry.cells])
-        box = dict(boxes_of_words(view))[name]
-        assert not meet(box, corners.min(axis=1), corners.max(axis=1)), name
-
-
-def test_a_joint_on_the_ground_of_a_case_has_its_name_below_the_ground() -> None:
-    """The name of a joint between logs and ground had no place at all."""
-    case = CASES["heap-of-logs"]
-    frame = ran(case.settings, ends=False)
-    view = Scene(PageState(case.settings, frame=frame, case=case.name))
-    _ = view.figure
-    view.lay_out(520.0, 420.0)
-    view.update(frame, Selection(case.instant), None)
-    assert view.picture is not None
-    ground = view.picture.page(view.picture.ground)
-    _, high = dict(boxes_of_words(view))["ground 1"]
-    assert high[1] < ground[..., 1].min()
-
-
 @pytest.mark.parametrize(
     "scene", ["arch", "belt", "block", "bundle", "fault", "incline", "mesh", "wall"]
 )
@@ -499,31 +339,3 @@ def test_a_side_that_is_held_is_not_moved_during_the_search() -> None:
     )
     line = figures_line(frame, Selection(0.5))
     assert "Movement of the right abutment <b>0 " in line
-
-
-@pytest.mark.parametrize("size", [(900.0, 300.0), (374.0, 300.0), (360.0, 256.0)])
-def test_the_weight_of_an_arch_is_named_at_its_arrow(
-    spread: Frame, size: tuple[float, float]
-) -> None:
-    view = shown(spread, 1.0)
-    view.lay_out(*size)
-    view.update(spread, Selection(1.0), None)
-    picture = view.picture
-    assert picture is not None
-    arrows = [each for each in picture.arrows if each.act.where == "body"]
-    shaft = picture.page(np.concatenate(arrows[0].lines)).mean(axis=0)
-    boxes = dict(boxes_of_words(view))
-    (name,) = [text for text in boxes if text.startswith("W")]
-    apart = np.maximum(boxes[name][0] - shaft, shaft - boxes[name][1])
-    assert apart.max() < 40.0
-
-
-def test_an_arch_whose_weight_is_told_below_it_is_as_high_as_its_figure(
-    spread: Frame,
-) -> None:
-    view = shown(spread, 1.0)
-    view.lay_out(900.0, 300.0)
-    view.update(spread, Selection(1.0), None)
-    assert view.picture is not None
-    layout = view.picture.layout
-    assert layout.size[1] * layout.scale[1] > 0.7 * layout.canvas.height

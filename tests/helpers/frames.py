@@ -6,6 +6,7 @@ import math
 
 from app.frame import Frame
 from app.messages import Needs, Start
+from app.state import default_settings
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.files.saved import dump
@@ -26,3 +27,15 @@ def frame_of(settings: Settings, needs: Needs, *, ends: bool) -> Frame:
             runner._iterate()
         FRAMES[key] = runner.frame(needs)
     return FRAMES[key]
+
+
+def ran(settings: Settings, *, ends: bool = True) -> Frame:
+    """Frame with which a run ends, or that of its second iterate."""
+    needs = Needs(frozenset({"thrust", "stress"}), readings=("hinges@0.5",))
+    return frame_of(settings, needs, ends=ends)
+
+
+def arch(**changes: object) -> Settings:
+    """Settings of an arch of few voussoirs."""
+    few = {"voussoirs": 12, "instants": 21, **changes}
+    return default_settings("arch").replace(**few)
