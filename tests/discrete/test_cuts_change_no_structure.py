@@ -259,7 +259,7 @@ def test_parts_tile_their_bodies_and_pairs_their_joints() -> None:
     assert np.array_equal(np.sort(rows), np.arange(len(rows)))
     lengths: dict[str, float] = {}
     for piece in cut.pieces:
-        name = cut.joint_names[piece.joint]
+        name = cut.structure.joints[piece.joint].name
         lengths[name] = lengths.get(name, 0.0) + float(piece.weights.sum())
     assert lengths["support"] == pytest.approx(1.0)
     assert lengths["contact 1-2"] == pytest.approx(1.0)

@@ -6,7 +6,6 @@ Parts of one body are glued where they were cut. Contact forces are lumped at th
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator, Sequence
-from functools import partial
 
 import numpy as np
 
@@ -18,8 +17,7 @@ from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body_parts import ShapePart
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.cut_shapes import Seam
-from solver.discrete.plane.joint_laws import glued, laws_of
-from solver.discrete.plane.joints_of_bodies import law_of_joints
+from solver.discrete.plane.joint_laws import laws_of
 from solver.discrete.plane.makers.band import Band
 from solver.discrete.problem import Problem
 from solver.discrete.scales import Scales
@@ -61,7 +59,7 @@ def problem_of(structure: Bodies, rest_of: RestOf = _nowhere) -> Problem:
     scales = cut.scales
     nodes = structure.nodes / cut.length
     inside = Inside(cut.parts, nodes, scales, len(structure.instants))
-    order = [*cut.joint_names]
+    order = [joint.name for joint in structure.joints]
     order += [spring.name for spring in structure.springs]
     problem = Problem(
         substructures=inside.substructures(),
@@ -102,7 +100,7 @@ def problem_of_band(band: Band) -> Problem:
 
 def _interfaces(cut: CutBodies) -> Iterator[tuple[str, Interface]]:
     """All interfaces by name: contacts, then cuts, then prescribed displacements."""
-    yield from laws_of(cut, partial(law_of_joints, cut))
+    yield from laws_of(cut)
     for number, spring in enumerate(cut.structure.springs):
         yield spring.name, _spring(cut, number)
     yield from _cuts_inside(cut)
@@ -141,15 +139,18 @@ def _glued(cut: CutBodies, body: int, number: int, basis: Array) -> Perfect:
     """Perfect interface of two parts of one body.
 
     Macro forces are polynomials along the seam, by the basis of one component,
-    (n_nodes, n_macro), in both directions of the body's axes.
+    (n_nodes, n_macro), in both directions of the body's axes, and in its rotation.
     """
     seam = cut.cuts[body].seams[number]
     first, second = [cut.parts[cut.owner(body, part)] for part in seam.parts]
     rows = first.rows(("first", body, number))
     opposite = second.rows(("second", body, number))
+    frames = cut.local_frames(body, seam.nodes)
     if rows.shape[1] > 2:
-        return glued(rows, opposite, basis)
-    return glued(rows, opposite, basis, cut.local_frames(body, seam.nodes))
+        # A beam is cut at one node, whose degrees of freedom stand for themselves.
+        frames = np.eye(3)[None]
+    macro = frames[:, :, None, :] * basis[:, None, :, None]
+    return Perfect(rows.ravel(), opposite.ravel(), macro.reshape(rows.size, -1))
 
 
 def _spring(cut: CutBodies, number: int) -> Contact:

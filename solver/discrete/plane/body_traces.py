@@ -14,8 +14,7 @@ from solver.discrete.plane.body import Held
 from solver.discrete.plane.body_parts import ShapePart
 from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint import Joint
-from solver.discrete.plane.joint_laws import JOINT_SIDES, JointPiece
-from solver.discrete.plane.joint_pieces import NodeFrames
+from solver.discrete.plane.joint_pieces import JOINT_SIDES, JointPiece, NodeFrames
 
 Named = tuple[int, Hashable, Trace]
 """A trace, with the index of its part and its name there."""

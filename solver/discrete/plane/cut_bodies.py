@@ -50,8 +50,8 @@ class CutBodies:
         How each body is cut.
     frames
         Directions of the degrees of freedom at all nodes.
-    joint_names, pieces
-        Names of the joints, and their pieces.
+    pieces
+        Pieces of the joints.
     first_parts
         Indices of the first part of each body, and of the parts.
     shape_parts
@@ -81,7 +81,6 @@ class CutBodies:
             structure.held,
             structure.springs,
         )
-        self.joint_names = [joint.name for joint in structure.joints]
         self.pieces = pieces_of(
             bodies,
             structure.joints,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from solver.arrays import Array, Flags, Indices
 from solver.discrete.plane.body import Body, Held, NodeSpring
 from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint import Joint
-from solver.discrete.plane.joint_laws import JointPiece
 from solver.discrete.plane.node_pairs import NodePairs
 from solver.refusal import RefusedError, Words
 
@@ -22,6 +22,33 @@ ALIKE = 1e-9
 """Largest difference of two directions that are the same."""
 ON_AXIS = 1e-12
 """Component of a unit normal up to which it counts as zero."""
+JOINT_SIDES = "above", "below"
+"""Sides of joints; the rows of a part at a piece are by these and its number."""
+
+
+class JointPiece(NamedTuple):
+    """Part of a joint: between one part of the body above and one part below.
+
+    Attributes
+    ----------
+    joint
+        Index of the joint.
+    parts
+        Index of the part above, and of that below, among all parts; on a rigid support
+        of the part above alone.
+    places
+        Indices of the nodes of its pairs along the joint, ascending, (n,).
+    weights
+        Length that belongs to each pair, (n,), m.
+    along
+        Component along the joint among those of a node: 0 the first, 1 the second.
+    """
+
+    joint: int
+    parts: tuple[int, ...]
+    places: Indices
+    weights: Array
+    along: int = 0
 
 
 def snapped(vectors: Array) -> Array:

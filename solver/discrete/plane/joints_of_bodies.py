@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.elements import legendre_basis
 from solver.discrete.plane.cut_bodies import CutBodies
-from solver.discrete.plane.joint_laws import JointPairs, Surface, contact_of
-from solver.discrete.plane.node_pairs import along_joints
-from solver.laws import BodyStiffness, Contact, NodalStiffness
+from solver.discrete.plane.joint_pieces import JOINT_SIDES
+from solver.laws import BodyStiffness, Component, NodalStiffness
 from solver.laws.stiffness import of_whole_mesh
 
 CUBIC = 3
@@ -20,37 +20,89 @@ are pressed together and bent take 6 iterations to 1 % of the contact force, six
 51; of degree 2 more than 120, with forces that are 20 to 160 % off then (measured)."""
 
 
-def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
-    """Law of joints by index: all on a support, or all between bodies."""
-    joints = [cut.structure.joints[number] for number in numbers]
-    pairs = JointPairs.of(cut, numbers)
-    sizes = [len(joint.nodes) for joint in joints]
-    # Numbers among the nodes of all these joints.
-    nodes = (np.cumsum(sizes) - sizes)[pairs.joints] + pairs.places
-    gap = along_joints([joint.gap for joint in joints], sizes)
-    mu = along_joints([joint.friction for joint in joints], sizes)
-    surface = Surface(
-        positions=_positions(cut, numbers)[nodes],
-        law=cut.structure.friction_law,
-        gap=gap[nodes],
-        friction=mu[nodes],
-    )
-    strengths = [joint.strength for joint in joints if joint.strength is not None]
-    if strengths:
-        strength = np.concatenate(strengths)[nodes] / cut.scales.force
-        surface = surface._replace(known=strength * pairs.weights[:, None])
-    if joints[0].is_image:
-        law = surface.law.of_one_side()
-        surface = surface._replace(law=law, slip_ratio=2.0)
-    beside: BodyStiffness | NodalStiffness
-    if cut.depths is None:
-        beside = _stiffness_beside(cut, numbers, pairs)
-    else:
-        beside = _stiffness_of_lattices(cut, cut.depths, numbers, pairs)
-    return contact_of(pairs, surface, cut.scales, beside, _macro_bases(cut, pairs))
+class JointPairs(NamedTuple):
+    """Pairs of nodes of joints of one law, joint by joint and piece by piece.
+
+    Attributes
+    ----------
+    pieces
+        Indices of the pieces of these joints.
+    sizes
+        Number of nodes of each joint, (n_joints,).
+    joints
+        Place of the joint of each pair among these joints, ascending, (n_pairs,).
+    places
+        Index of the node of each pair along its joint, (n_pairs,).
+    weights
+        Tributary area of each pair for a metre of thickness, (n_pairs,), m^2.
+    tangent, normal
+        Boundary rows along and across the joints; no normal ones where the pressure is
+        known.
+    """
+
+    pieces: Sequence[int]
+    sizes: list[int]
+    joints: Indices
+    places: Indices
+    weights: Array
+    tangent: Component
+    normal: Component | None
+
+    @classmethod
+    def of(cls, cut: CutBodies, numbers: Sequence[int]) -> JointPairs:
+        """Pairs of joints by index, ascending."""
+        owners = np.array([piece.joint for piece in cut.pieces])
+        chosen = np.flatnonzero(np.isin(owners, numbers)).tolist()
+        pieces = [cut.pieces[number] for number in chosen]
+        counts = np.array([len(piece.places) for piece in pieces])
+        tangent, normal = _components(cut, chosen, counts)
+        return cls(
+            pieces=chosen,
+            sizes=[len(cut.structure.joints[number].nodes) for number in numbers],
+            joints=np.repeat(np.searchsorted(numbers, owners[chosen]), counts),
+            places=np.concatenate([piece.places for piece in pieces]),
+            weights=np.concatenate([piece.weights for piece in pieces]),
+            tangent=tangent,
+            normal=normal,
+        )
+
+    @property
+    def nodes(self) -> Indices:
+        """Number of the node of each pair among those of all joints, (n_pairs,)."""
+        ends: Indices = np.cumsum(self.sizes)
+        return (ends - self.sizes)[self.joints] + self.places
 
 
-def _positions(cut: CutBodies, numbers: Sequence[int]) -> Array:
+def _components(
+    cut: CutBodies, numbers: Sequence[int], counts: Indices
+) -> tuple[Component, Component | None]:
+    """Components along and across pieces, from indices and counts of pairs, (n,).
+
+    There are none across where parts have rows of one component.
+    """
+    pieces = [cut.pieces[number] for number in numbers]
+    along = np.repeat([piece.along for piece in pieces], counts)
+    # Indices of the pairs of each piece within it.
+    within = np.arange(len(along)) - np.repeat(np.cumsum(counts) - counts, counts)
+    tangential = list[Indices]()
+    across = list[Indices]()
+    for side, name in enumerate(JOINT_SIDES[: len(pieces[0].parts)]):
+        parts = [cut.parts[piece.parts[side]] for piece in pieces]
+        of_pieces = [
+            part.first_rows[name, number]
+            for number, part in zip(numbers, parts, strict=True)
+        ]
+        _, n_components = parts[0].traces[name, numbers[0]].dofs.shape
+        rows = np.repeat(of_pieces, counts) + n_components * within
+        tangential.append(rows + along)
+        if n_components > 1:
+            across.append(rows + 1 - along)
+    if not across:
+        return Component(*tangential), None
+    return Component(*tangential), Component(*across)
+
+
+def positions_along(cut: CutBodies, numbers: Sequence[int]) -> Array:
     """Positions of the nodes of joints along each, from its start, (n_nodes,), m."""
     structure = cut.structure
     known = dict[int, Array]()
@@ -71,10 +123,19 @@ def _distances(nodes: Array) -> Array:
     return np.cumsum(np.append(0.0, steps))
 
 
-def _stiffness_beside(
+def stiffness_beside(
+    cut: CutBodies, numbers: Sequence[int], pairs: JointPairs
+) -> BodyStiffness | NodalStiffness:
+    """Stiffness of the bodies at joints, for their search direction."""
+    if cut.depths is None:
+        return _stiffness_of_shapes(cut, numbers, pairs)
+    return _stiffness_of_lattices(cut, cut.depths, numbers, pairs)
+
+
+def _stiffness_of_shapes(
     cut: CutBodies, numbers: Sequence[int], pairs: JointPairs
 ) -> NodalStiffness:
-    """Stiffness of the bodies at joints, for their search direction.
+    """Stiffness of bodies of any shape at joints, for their search direction.
 
     A mesh resists with about E as a whole (`of_whole_mesh`). Beams resist with E A / l
     along a joint of length l; across it they stay where they are pressed.
@@ -162,7 +223,7 @@ def _whole_joints(
     return modulus * np.where(is_mesh, of_mesh, 1.0), modulus * lengths / depth
 
 
-def _macro_bases(cut: CutBodies, pairs: JointPairs) -> list[Array]:
+def macro_bases(cut: CutBodies, pairs: JointPairs) -> list[Array]:
     """Macro bases of pieces in one component, (n_pairs, n_macro) each.
 
     Without columns where no macro forces balance. A line between forces at its ends
