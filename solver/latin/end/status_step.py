@@ -16,7 +16,6 @@ import numpy as np
 
 from solver.checks import FLAG, check
 from solver.discrete.problem import Problem
-from solver.latin.indicators import contact_status
 from solver.latin.iterate import Iterate
 from solver.laws import OPEN
 from solver.reference.assembly import never
@@ -134,7 +133,7 @@ def states_of(iterate: Iterate) -> States:
     """
     problem = iterate.problem
     sizes = problem.contacts.sizes
-    status = contact_status(iterate, np.minimum(STILL, FRONT / sizes**2))
+    status = iterate.status_above(np.minimum(STILL, FRONT / sizes**2))
     return _of_components(problem, status)
 
 
