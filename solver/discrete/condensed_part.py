@@ -47,11 +47,6 @@ class PartForce(NamedTuple):
     patterns: Array
     courses: Array
 
-    @classmethod
-    def over_time(cls, force: Array) -> PartForce:
-        """Forces, (n, n_instants), as one pattern for each instant."""
-        return cls(force, np.eye(force.shape[1]))
-
     def at(self, instants: slice | list[int]) -> Array:
         """Forces at n instants, (n_dofs_of_part, n), scaled."""
         return np.asarray(self.patterns @ self.courses[:, instants])

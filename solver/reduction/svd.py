@@ -32,10 +32,9 @@ class Decomposition:
         Shape (n_points, n_modes), orthonormal in `space_weights`; the largest entry of
         each is positive.
     time_modes
-        Shape (n_modes, n_instants), orthonormal in `time_weights`.
-    positions, space_weights, time_weights
-        Shapes (n_points,), m or mere numbers, (n_points,), (n_instants,); weights are
-        positive.
+        Shape (n_modes, n_instants), orthonormal in the weights of the instants.
+    positions, space_weights
+        Shape (n_points,) both: m or mere numbers, and positive weights.
     """
 
     values: Array
@@ -43,7 +42,6 @@ class Decomposition:
     time_modes: Array
     positions: Array
     space_weights: Array
-    time_weights: Array
 
     @cached_property
     def errors(self) -> Array:
@@ -97,7 +95,6 @@ def decompose(
         time_modes=time_modes * signs[:, None],
         positions=positions,
         space_weights=space_weights,
-        time_weights=time_weights,
     )
 
 

@@ -174,9 +174,6 @@ class IncrementalContact:
         blurred = condensed.rounding(deformation, rigid, size)
         least = ROUNDING * condensed.inside(deformation)
         is_open = _without_forces(self._rules, forces, least)
-        residual = unbalanced
-        if size > 0.0:
-            residual = unbalanced / size
         converged = reached & (unbalanced <= max(CONVERGED * size, blurred))
         scales = problem.scales
         return Reference(
@@ -185,7 +182,6 @@ class IncrementalContact:
             deformation=deformation * scales.displacement,
             contact_force=forces * scales.force,
             status=_status(self._rules, slip, forces, is_open),
-            residual=float(residual.max(initial=0.0)),
             unbalanced=float(unbalanced.max(initial=0.0)) * scales.force,
             rounding=blurred * scales.force,
             converged=converged,

@@ -262,7 +262,6 @@ class IncrementalRod:
             deformation=displacement,
             contact_force=friction * problem.scales.force,
             status=np.sign(increments.T[dofs]).astype(np.int8),
-            residual=max([0.0] + [minimum.residual for minimum in minima]),
             unbalanced=max([0.0] + [minimum.violation for minimum in minima])
             * problem.scales.force,
             rounding=LEFT_INSIDE * inside * problem.scales.force,

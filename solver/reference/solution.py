@@ -37,12 +37,9 @@ class Reference:
         Shape (n_points, n_instants), the points stacked interface by interface: -1 slip
         backward, 0 stick, +1 slip forward, 2 open. The increment of a sticking point is
         zero.
-    residual
-        Relative KKT residual, the maximum over the instants. Of rods: distance of 0
-        from the subdifferential K v - g + r d|v| of phi, in the maximum norm, divided
-        by the sum of |g|.
     unbalanced
-        The residual before it is divided, N.
+        KKT residual, the maximum over the instants, N. Of rods: distance of 0 from the
+        subdifferential K v - g + r d|v| of phi, in the maximum norm.
     converged
         Whether the instants are solved, shape (n_instants,).
     ambiguous
@@ -70,7 +67,6 @@ class Reference:
     deformation: Array
     contact_force: Array
     status: States
-    residual: float
     unbalanced: float
     converged: NDArray[np.bool_]
     ambiguous: NDArray[np.bool_]
@@ -80,11 +76,6 @@ class Reference:
     is_lost: bool = False
     collapse: Collapse | None = None
     seconds: float = 0.0
-
-    @property
-    def friction_force(self) -> Array:
-        """Nodal friction force where its bound is known, (n_points, n_instants), N."""
-        return self.contact_force
 
     def contact(self, name: str) -> ContactFields:
         """Forces, status and motion of an interface with friction."""

@@ -74,7 +74,6 @@ class RopeSettings(Settings):
     ALSO_CHIEF = ("friction", "k_scale")
     GROWS = ("layers",)
     loop_is_over_displacement = False
-    jumps = 0
 
     construction = shared.STRAND.curve(
         "mooring",

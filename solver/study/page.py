@@ -109,8 +109,6 @@ class Runs:
 
     Attributes
     ----------
-    numbers
-        Numbers of the runs, shape (n,).
     x, y
         Points, shape (n,), in the units of the axes; in a panel y is NaN where a run
         has no value.
@@ -122,7 +120,6 @@ class Runs:
         Settings and result of each run, in words.
     """
 
-    numbers: Indices
     x: Array
     y: Array
     hues: Indices

@@ -85,15 +85,12 @@ class ProfileSide:
         place is the nearest run.
     rises
         Misfit of the places less the least one, same shape.
-    places
-        The z of the places, shape (n_places, p).
     is_at_bound
         Whether the last place is at a bound of the setting.
     """
 
     distances: Array
     rises: Array
-    places: Array
     is_at_bound: bool
 
     def end(self, level: float) -> float:
@@ -261,11 +258,9 @@ class Valley:
         farthest = int(distances.argmax())
         if distances[farthest] < limit:
             return None
-        places = [self.z, self._inside[farthest]]
+        places = self.z, self._inside[farthest]
         rises = [self.runs.misfit(place) - self.minimum for place in places]
-        return ProfileSide(
-            np.array([0.0, limit]), np.array(rises), np.array(places), False
-        )
+        return ProfileSide(np.array([0.0, limit]), np.array(rises), False)
 
     def _side(self, along: Array, limit: float) -> ProfileSide:
         """Side of a profile along a direction, (p,), up to a distance `limit` in z.
@@ -279,7 +274,7 @@ class Valley:
         course = self._covariance @ along / variance
         distances = [0.0]
         rises = [self.runs.misfit(self.z) - self.minimum]
-        places = [self.z]
+        before = self.z
         step = min(2.0 * math.sqrt(variance), limit)
         while distances[-1] < limit and rises[-1] <= self.doubt and len(rises) < PLACES:
             last = distances[-1]
@@ -288,19 +283,17 @@ class Valley:
             if last < LIMIT < limit:
                 stop = LIMIT
             distance = min(last + step, stop)
-            ahead = places[-1] + course * (distance - last)
-            place = self._place(along, distance, ahead, places[-1])
+            ahead = before + course * (distance - last)
+            place = self._place(along, distance, ahead, before)
             rise = self._rise(place)
             # The floor bends: the next place is sought along the last step.
-            course = (place - places[-1]) / (distance - last)
+            course = (place - before) / (distance - last)
             step = distance * self._growth(rise)
             distances.append(distance)
-            places.append(place)
             rises.append(rise)
+            before = place
         is_at_bound = distances[-1] == room
-        return ProfileSide(
-            np.array(distances), np.array(rises), np.array(places), is_at_bound
-        )
+        return ProfileSide(np.array(distances), np.array(rises), is_at_bound)
 
     def _rise(self, place: Array) -> float:
         """Misfit at a point, (p,), less the minimum; stores points of about equal one.

@@ -88,7 +88,7 @@ def test_cut_or_not_rods_have_one_stiffness_and_load(kind: str, cuts: int) -> No
     wanted = reference_of(whole)
     found = reference_of(cut)
     assert close(found.displacement, wanted.displacement, 1e-9)
-    assert found.friction_force == pytest.approx(wanted.friction_force, abs=1e-6)
+    assert found.contact_force == pytest.approx(wanted.contact_force, abs=1e-6)
 
 
 def test_stiffness_of_a_rod_is_that_of_springs_in_series() -> None:

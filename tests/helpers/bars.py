@@ -44,7 +44,7 @@ def boundary_of(problem, reference):
     """
     law = problem.friction
     displacement = reference.displacement / problem.scales.displacement
-    friction = reference.friction_force / problem.scales.force
+    friction = reference.contact_force / problem.scales.force
     most = law.tangential.largest_bound.max(axis=1)
     share = most / np.bincount(law.points, weights=most)[law.points]
     force = np.zeros((problem.n_rows, problem.n_instants))

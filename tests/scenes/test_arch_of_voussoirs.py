@@ -55,7 +55,7 @@ def test_an_arch_falls_where_no_forces_in_its_joints_balance_its_weight(
     settings = settings_of(young=1e12, elements=4, **STILL, **changes)
     problem = discretise(settings)
     assert (collapse_of(problem) is None) is stands
-    assert settings.statics.stands is stands
+    assert (settings.statics.reserve >= 0.0) is stands
     if stands:
         assert reference_of(problem).converged.all()
 

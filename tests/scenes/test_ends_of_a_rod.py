@@ -83,7 +83,7 @@ def test_the_loop_of_a_spring_that_is_pulled_out_holds_the_energy_that_friction_
     force = loop.force(fields)
     moved = loop.displacement(fields.displacement)
     contact = fields.contact("friction")
-    taken = np.diff(contact.slip, axis=1) * fields.friction_force[:, 1:]
+    taken = np.diff(contact.slip, axis=1) * fields.contact_force[:, 1:]
     stored = AxialForce(fields.problem)(fields.displacement)[:, -1] ** 2
     elastic = (
         stored / (settings.young * settings.section) / settings.elements
@@ -129,9 +129,9 @@ def test_a_clamp_that_moves_one_way_is_a_support_that_moves_the_other():
             peak=300.0,
         )
     )
-    largest = np.abs(clamp.friction_force).max()
+    largest = np.abs(clamp.contact_force).max()
     np.testing.assert_allclose(
-        support.friction_force, clamp.friction_force, atol=1e-9 * largest
+        support.contact_force, clamp.contact_force, atol=1e-9 * largest
     )
 
 

@@ -112,7 +112,7 @@ def test_a_pointed_arch_falls_where_no_forces_in_its_joints_balance_its_weight(
     for share, stands in ((0.98, False), (1.02, True)):
         near = settings.replace(**{name: share * limit})
         assert (collapse_of(discretise(near)) is None) is stands
-        assert near.statics.stands is stands
+        assert (near.statics.reserve >= 0.0) is stands
 
 
 @pytest.mark.parametrize("voussoirs", [24, 25])

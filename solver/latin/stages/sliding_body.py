@@ -36,8 +36,8 @@ def slide_of(problem: Problem, k: Array) -> Slide | None:
     if len(problem.contacts) != 2:
         return None
     laws = problem.contacts.values()
-    springs = [law.normal for law in laws if _is_spring(law)]
-    ground = [law for law in laws if not _is_spring(law)]
+    springs = [law.normal for law in laws if law.is_spring]
+    ground = [law for law in laws if not law.is_spring]
     if len(ground) != 1 or len(springs) != 1:
         return None
     law = ground[0]
@@ -50,12 +50,6 @@ def slide_of(problem: Problem, k: Array) -> Slide | None:
     if motion is None:
         return None
     return Slide(problem, motion, k, law, spring)
-
-
-def _is_spring(law: Contact) -> bool:
-    """Check whether a law is a spring: compliant contact without friction."""
-    rubs = law.tangential.friction.any() or law.tangential.bound.any()
-    return law.normal is not None and law.normal.compliance is not None and not rubs
 
 
 def _motion_along(problem: Problem, along: Indices, across: Indices) -> Array | None:

@@ -170,11 +170,6 @@ class VoussoirArch:
         )
         return float(-best.fun)
 
-    @property
-    def stands(self) -> bool:
-        """Check whether forces in the joints balance the weight."""
-        return self.reserve >= 0.0
-
     def thrusts(self) -> tuple[float, float] | None:
         """Smallest and largest thrust over the weight; None where the arch falls.
 

@@ -51,31 +51,6 @@ class Capstan:
         return math.exp(self.friction * self.angle)
 
     @property
-    def loss(self) -> float:
-        """Share of the tension that friction takes per length, c = mu a / L, 1/m."""
-        return self.friction * self.angle / self.length
-
-    def stretched(self, tension: float, length: float) -> float:
-        """Elongation of a length that slips towards an end, and of the span, m.
-
-        `tension` is that of the end, N.
-        """
-        along = length
-        if self.loss:
-            along = -math.expm1(-self.loss * length) / self.loss
-        return tension / self.stiffness * (along + self.span)
-
-    def elongation(self, tension: float, *, both_ends: bool = False) -> float:
-        """Elongation at a jack, m, that pulls from zero to a tension, N.
-
-        The other end is held, or jacked alike, so that the middle stands still.
-        """
-        if both_ends:
-            return self.stretched(tension, 0.5 * self.length)
-        held = tension / self.ratio / self.stiffness * self.span
-        return self.stretched(tension, self.length) + held
-
-    @property
     def angles(self) -> Array:
         """Angles along the guide from its first end, shape (POINTS,), rad."""
         return np.linspace(0.0, self.angle, POINTS)

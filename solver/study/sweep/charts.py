@@ -179,7 +179,6 @@ def _runs(plan: Plan, rows: Sequence[Row], index: int) -> Runs:
     if len(plan.axes) > 1:
         hues = levels[1] + 1
     return Runs(
-        numbers=numbers,
         x=plan.axes[0].places[levels[0]],
         y=y,
         hues=hues,

@@ -20,12 +20,6 @@ class Brick(NamedTuple):
     columns: int
     rows: int
 
-    def nodes(self) -> tuple[slice, slice]:
-        """Nodes along and up, as indices of the grid."""
-        along = slice(self.x, self.x + self.columns + 1)
-        up = slice(self.y, self.y + self.rows + 1)
-        return along, up
-
 
 def grid_of(bricks: Sequence[Brick]) -> tuple[int, int]:
     """Size of all bricks together, in elements along and up."""
