@@ -348,7 +348,7 @@ def test_a_loop_straight_in_a_setting_has_a_profile_by_the_error_of_the_slope() 
 def test_a_side_ends_where_the_misfit_last_rises_above_a_level() -> None:
     distances = np.array([0.0, 1.0, 2.0, 3.0])
     rises = np.array([0.0, 9.0, 1.0, 9.0])
-    side = ProfileSide(distances, rises, distances[:, None], is_at_bound=False)
+    side = ProfileSide(distances, rises, is_at_bound=False)
     assert side.end(4.0) == pytest.approx(2.5)
     assert side.end(10.0) == np.inf
     at_bound = ProfileSide(distances, rises, distances[:, None], is_at_bound=True)
