@@ -351,7 +351,7 @@ def test_a_side_ends_where_the_misfit_last_rises_above_a_level() -> None:
     side = ProfileSide(distances, rises, is_at_bound=False)
     assert side.end(4.0) == pytest.approx(2.5)
     assert side.end(10.0) == np.inf
-    at_bound = ProfileSide(distances, rises, distances[:, None], is_at_bound=True)
+    at_bound = ProfileSide(distances, rises, is_at_bound=True)
     assert at_bound.end(10.0) == 3.0
 
 
