@@ -254,9 +254,10 @@ class MethodSettings(param.Parameterized):
     @classmethod
     def _of(cls, values: dict[str, Any]) -> Self:
         """Settings of plain values that have been checked separately."""
-        usual = cls._usual()
-        complete = cls.of_method(values.get("method", usual["method"])) | values
-        # To set a value takes param some time, even where it is the default.
+        usual = cls.defaults("fast")
+        complete = {**cls.defaults(values.get("method", "fast"))} | values
+        # To set a value takes param some time, even where it is the default, which is
+        # that of the fast method.
         changed = {}
         for name, value in complete.items():
             if value is not usual[name]:
@@ -267,34 +268,21 @@ class MethodSettings(param.Parameterized):
 
     @classmethod
     @cache
-    def _usual(cls) -> Mapping[str, Any]:
-        """Default of every setting, whatever the method, by name."""
-        # Param takes long to say each of them.
-        definitions = cls.definitions().items()
-        return {name: definition.default for name, definition in definitions}
-
-    @classmethod
-    def of_method(cls, method: str) -> dict[str, Any]:
-        """Values of the settings that a method sets."""
-        return dict(cls._values_of(method))
-
-    @classmethod
-    @cache
-    def _values_of(cls, method: str) -> Mapping[str, Any]:
-        """Values of the settings that a method sets, by name."""
-        values = dict(cls.METHODS[method])
-        for name, value in values.items():
-            definition = cls.definitions()[name]
-            # A scene may lack an option, as a nested start.
-            is_choice = isinstance(definition, param.Selector)
-            if is_choice and value not in definition.objects:
-                values[name] = definition.default
+    def defaults(cls, method: str) -> Mapping[str, Any]:
+        """Value of every setting if only the method is given, by name."""
+        definitions = cls.definitions()
+        values = {name: each.default for name, each in definitions.items()}
+        for name, value in cls.METHODS[method].items():
+            options = getattr(definitions[name], "objects", (value,))
+            # A scene may lack an option of a choice, as a nested start.
+            if value in options:
+                values[name] = value
         return values
 
     @classmethod
-    def defaults(cls, method: str) -> dict[str, Any]:
-        """Value of every setting if only the method is given."""
-        return {**cls._usual()} | cls.of_method(method)
+    def of_method(cls, method: str) -> dict[str, Any]:
+        """Values of the settings that a method sets, by name."""
+        return {name: cls.defaults(method)[name] for name in cls.METHODS[method]}
 
     def check_together(self) -> None:
         """Refuse values that are inconsistent; derived classes extend this."""
@@ -315,13 +303,12 @@ class MethodSettings(param.Parameterized):
         Where the method differs, too, the settings that it sets are compared with the
         values that it sets.
         """
+        defaults = self.defaults(self.method)
         if base:
             defaults = base.values()
-        else:
-            defaults = self.defaults(self.method)
-        # Values that come with another method are no choice of their own.
-        if base and base.method != self.method:
-            defaults.update(self.of_method(self.method))
+            # Values that come with another method are no choice of their own.
+            if base.method != self.method:
+                defaults |= self.of_method(self.method)
         changed = {}
         for name, value in self._values.items():
             if value != defaults[name]:
