@@ -38,7 +38,11 @@ def violation_of(problem: Problem, displacement: Array, force: Array) -> float:
     """
     displacement, force = _as_lengths(problem, displacement, force)
     noise = _rounding(displacement, force)
-    groups = _known_groups(problem)
+    groups = [
+        group
+        for group in problem.contacts.groups
+        if group.law.incremental_form() is not None
+    ]
     violations = [group.law.violation(displacement, force, noise) for group in groups]
     energy = _elastic_energy(problem, displacement, beyond(force, noise))
     energy += sum(float(violation.dissipated.sum()) for violation in violations)
@@ -76,12 +80,6 @@ def _as_lengths(
     pushed = force.copy(order="K")
     pushed[turns] /= length
     return moved, pushed
-
-
-def _known_groups(problem: Problem) -> list[ContactGroup]:
-    """Groups of contacts whose laws are those of `Contact.violation`."""
-    groups = problem.contacts.groups
-    return [group for group in groups if group.law.incremental_form() is not None]
 
 
 def _worst(group: ContactGroup, violation: Violation, mean_slip: float) -> float:

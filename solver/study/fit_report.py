@@ -324,20 +324,16 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> None:
         _distances(fit, measured),
         f"{measured.source}: {measured.message}",
     ]
+    panels = [_loops(fit, measured), _differences(fit)]
     write_page(
         folder / PAGE,
         "fit.html",
-        [PlotSection("Loop and differences", _panels(fit, measured))],
+        [PlotSection("Loop and differences", panels)],
         title=f"{fit.settings.scene.capitalize()} fitted to a loop",
         sentences=sentences,
         rows=_rows(fit, _titles(fit)),
         settings=dump(fit.settings),
     )
-
-
-def _panels(fit: Fit, measured: MeasuredLoop) -> list[Panel]:
-    """Panels of the loops, and of the differences of the nearest run."""
-    return [_loops(fit, measured), _differences(fit)]
 
 
 def _loops(fit: Fit, measured: MeasuredLoop) -> Panel:

@@ -166,15 +166,11 @@ class NodeFrames:
         is_turned[self._sprung] = True
         return is_turned
 
-    def of_body(self, number: int) -> Array:
-        """Directions at the nodes of a body, (n, 2, 2)."""
-        return self.frames[self.first_nodes[number] : self.first_nodes[number + 1]]
-
     def axes_held(self, held: Held, nodes: Indices) -> tuple[Indices, Array]:
         """Degree of freedom that is held, and its sign, of nodes, (n,) all."""
         if held.axis == 2:
             return np.full(len(nodes), 2), np.ones(len(nodes))
-        along = self.of_body(held.body)[nodes, :, held.axis]
+        along = self.frames[self.first_nodes[held.body] + nodes, :, held.axis]
         which = np.abs(along).argmax(axis=1)
         return which, along[np.arange(len(nodes)), which]
 

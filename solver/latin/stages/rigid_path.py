@@ -56,7 +56,8 @@ class BalancePath:
         for _ in range(KINKS * self._n_pairs):
             step, rates = self._direction()
             way = 1.0
-            if crossed is not None and self._leads_back(crossed, rates):
+            # The margin that was crossed may be one that is only followed backwards.
+            if crossed is not None and self._is_above[crossed] != (rates[crossed] > 0):
                 way = -1.0
             lengths = self._lengths(way * rates)
             crossed = int(lengths.argmin())
@@ -99,10 +100,6 @@ class BalancePath:
         bound = self._forces.friction * overlap / self._forces.across
         margins = np.concatenate([overlap, sticking - bound, -sticking - bound])
         return np.asarray(margins[:, 0])
-
-    def _leads_back(self, crossed: int, rates: Array) -> bool:
-        """Check whether the crossed margin can only be followed backwards."""
-        return bool(self._is_above[crossed] != (rates[crossed] > 0.0))
 
     def _lengths(self, rates: Array) -> Array:
         """Lengths of the path up to the zero of each margin, (3 n_pairs,).

@@ -257,12 +257,6 @@ class Stack:
         return np.broadcast_to(-self.sides["bottom"].y.mean, shape)
 
     @property
-    def _shows_settlement(self) -> bool:
-        """Check whether ground settles, and nothing drives the bodies along it."""
-        is_driven = any(not side.x.is_zero for side in self.sides.values())
-        return bool(np.any(self.settlement)) and not is_driven
-
-    @property
     def axes(self) -> Axes:
         """Titles and units of the loop."""
         return self._shown.axes
@@ -278,7 +272,8 @@ class Stack:
     @property
     def _shown(self) -> StackLoop:
         """Loop of the load or displacement that drives the bodies."""
-        if self._shows_settlement:
+        is_driven = any(not side.x.is_zero for side in self.sides.values())
+        if np.any(self.settlement) and not is_driven:
             return SettlementLoop(self.settlement)
         if self.tilt is not None and self.spring is not None:
             return SlopeLoop(self.tilt)

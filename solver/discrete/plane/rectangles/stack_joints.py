@@ -69,7 +69,9 @@ class StackJoints:
         paired = self._paired(line)
         if line.is_upright:
             return bool(paired is None or paired.any())
-        if self._is_known(line):
+        support = self.stack.support
+        has_strength = support is not None and support.strength is not None
+        if line.below is None and has_strength:
             return True
         sides = self.stack.sides
         held = [
@@ -90,13 +92,6 @@ class StackJoints:
         paired = np.ones(line.last - line.first + 1, dtype=bool)
         paired[[0, -1]] = False
         return paired
-
-    def _is_known(self, line: BrickJoint) -> bool:
-        """Check whether a joint is with a support of known strength."""
-        support = self.stack.support
-        return (
-            line.below is None and support is not None and support.strength is not None
-        )
 
     def _key(self, line: BrickJoint) -> Hashable:
         """Key of a joint: those with equal keys differ in name, bodies and start."""
