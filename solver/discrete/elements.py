@@ -10,6 +10,7 @@ from itertools import product
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
+from scipy import sparse
 
 from solver.arrays import Array, Indices
 
@@ -111,6 +112,18 @@ def _bending(xi: float, eta: float, width: float, height: float) -> Array:
 def dofs_of(nodes: Indices) -> Indices:
     """Degrees of freedom x and y of nodes, (..., n), in turn: shape (..., 2 n)."""
     return np.stack([2 * nodes, 2 * nodes + 1], axis=-1).reshape(*nodes.shape[:-1], -1)
+
+
+def assembled(
+    blocks: Array, rows: Indices, columns: Indices, shape: tuple[int, int]
+) -> sparse.csr_array:
+    """Sparse matrix of a shape from the blocks of elements: equal places add up.
+
+    `rows` and `columns` are those of the entries of all blocks, which they broadcast
+    with.
+    """
+    places = [np.broadcast_to(each, blocks.shape).ravel() for each in (rows, columns)]
+    return sparse.csr_array(sparse.coo_array((blocks.ravel(), tuple(places)), shape))
 
 
 def legendre_basis(positions: Array, slenderness: float, degree: int) -> Array:

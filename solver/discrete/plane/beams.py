@@ -12,6 +12,7 @@ from scipy import sparse
 from solver.arrays import Array, Indices
 from solver.cache import content_of
 from solver.checks import POSITIVE, Numbers, check
+from solver.discrete.elements import assembled
 from solver.discrete.plane.meshes import HALVES, on_nodes
 
 ALONG = np.array([0, 3])
@@ -164,11 +165,8 @@ class Beam:
             turned[:, first + 2, first + 2] = 1.0
         blocks = turned.swapaxes(1, 2) @ own @ turned
         dofs = 3 * elements[:, None] + np.arange(6)
-        places = np.repeat(dofs, 6, axis=1).ravel(), np.tile(dofs, 6).ravel()
         size = 3 * len(self.nodes)
-        return sparse.csr_array(
-            sparse.coo_array((blocks.ravel(), places), (size, size))
-        )
+        return assembled(blocks, dofs[:, :, None], dofs[:, None], (size, size))
 
     def volumes(self, elements: Indices) -> Array:
         """Volume that belongs to each node, of some beams, shape (n_nodes,), m^3."""
@@ -190,10 +188,8 @@ class Beam:
         strains = turned[:, :, None] * stretch[:, None]
         rows = np.arange(3 * len(elements)).reshape(-1, 3, 1)
         columns = (2 * elements[:, None] + np.arange(4))[:, None]
-        places = [each.ravel() for each in np.broadcast_arrays(rows, columns)]
         shape = 3 * len(elements), 2 * len(self.nodes)
-        matrix = sparse.coo_array((strains.ravel(), tuple(places)), shape)
-        return sparse.csr_array(matrix)
+        return assembled(strains, rows, columns, shape)
 
     @cached_property
     def flaw(self) -> str:

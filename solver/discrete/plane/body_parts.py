@@ -16,7 +16,7 @@ from scipy import sparse
 from solver.arrays import Array, Flags, Indices
 from solver.cache import CACHE, content_of
 from solver.discrete.condensed_part import PartForce
-from solver.discrete.elements import dofs_of, elastic_matrix
+from solver.discrete.elements import assembled, dofs_of, elastic_matrix
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.body import Body
 from solver.discrete.plane.lattice import Lattice
@@ -304,6 +304,6 @@ class ShapePart:
         blocks[:, :2, :2] = frames
         blocks[:, 2:, 2:] = 1.0
         dofs = np.arange(len(frames) * n_axes).reshape(-1, n_axes)
-        rows = np.repeat(dofs, n_axes, axis=1).ravel()
-        columns = np.tile(dofs, n_axes).ravel()
-        return sparse.csr_array((blocks.ravel(), (rows, columns)))
+        return assembled(
+            blocks, dofs[:, :, None], dofs[:, None], (dofs.size, dofs.size)
+        )

@@ -15,7 +15,12 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices
 from solver.checks import POSITIVE, Count, check
-from solver.discrete.elements import dofs_of, element_stiffness, strain_matrix
+from solver.discrete.elements import (
+    assembled,
+    dofs_of,
+    element_stiffness,
+    strain_matrix,
+)
 from solver.discrete.plane.meshes import HALVES, chains_along, normals_out, on_nodes
 
 
@@ -266,10 +271,9 @@ class Lattice:
         """
         own = element_stiffness(self.width, self.height, elastic)
         dofs = dofs_of(self.element_nodes[elements])
-        places = np.repeat(dofs, len(own), axis=1).ravel(), np.tile(dofs, 8).ravel()
-        values = np.tile(own.ravel(), len(dofs))
+        blocks = np.broadcast_to(own, (len(dofs), *own.shape))
         size = 2 * self.grid.size
-        return sparse.csr_array(sparse.coo_array((values, places), (size, size)))
+        return assembled(blocks, dofs[:, :, None], dofs[:, None], (size, size))
 
     def outline(self, elements: Indices) -> Indices:
         """Nodes of some elements that are not amid four of them, ascending, (n,)."""
@@ -291,8 +295,6 @@ class Lattice:
         own = strain_matrix(0.0, 0.0, self.width, self.height)
         dofs = dofs_of(self.element_nodes[elements])
         rows = np.arange(3 * len(elements)).reshape(-1, 3, 1)
-        places = [each.ravel() for each in np.broadcast_arrays(rows, dofs[:, None])]
-        values = np.tile(own.ravel(), len(elements))
+        blocks = np.broadcast_to(own, (len(dofs), *own.shape))
         shape = 3 * len(elements), 2 * self.grid.size
-        matrix = sparse.coo_array((values, tuple(places)), shape)
-        return sparse.csr_array(matrix)
+        return assembled(blocks, rows, dofs[:, None], shape)

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.discrete.elements import dofs_of
+from solver.discrete.elements import assembled, dofs_of
 from solver.discrete.plane.meshes import Mesh
 
 if TYPE_CHECKING:
@@ -50,11 +50,8 @@ def mesh_stiffness(
     stresses = np.einsum("ab,bieq,eq->aieq", elastic, strains, basis.dx)
     blocks = np.einsum("aieq,ajeq->ije", strains, stresses, optimize=True)
     dofs = dofs_of(np.searchsorted(nodes, basis.element_dofs.T)).T
-    rows = np.broadcast_to(dofs[:, None], blocks.shape)
-    columns = np.broadcast_to(dofs, blocks.shape)
-    places = rows.ravel(), columns.ravel()
     size = 2 * len(nodes)
-    return sparse.csr_array(sparse.coo_array((blocks.ravel(), places), (size, size)))
+    return assembled(blocks, dofs[:, None], dofs, (size, size))
 
 
 def mesh_volumes(basis: skfem.Basis) -> Array:
@@ -80,10 +77,7 @@ def mesh_strains(mesh: Mesh, elements: Indices, nodes: Indices) -> sparse.csr_ar
     size = len(elements)
     rows = np.arange(3 * size).reshape(size, 3).T[:, :, None]
     dofs = dofs_of(np.searchsorted(nodes, basis.element_dofs.T)).T
-    both = np.broadcast_arrays(rows, dofs.T)
-    places = both[0].ravel(), both[1].ravel()
-    shape = 3 * size, 2 * len(nodes)
-    return sparse.csr_array(sparse.coo_array((strains.ravel(), places), shape))
+    return assembled(strains, rows, dofs.T, (3 * size, 2 * len(nodes)))
 
 
 def _strains(basis: skfem.Basis) -> Array:
