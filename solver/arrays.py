@@ -10,6 +10,7 @@ import numpy as np
 from numpy.linalg import LinAlgError
 from numpy.typing import NDArray
 from scipy import sparse
+from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import SuperLU, splu
 
 Array = NDArray[np.float64]
@@ -43,6 +44,24 @@ def sparse_factor(matrix: sparse.csc_array, **how: Any) -> SuperLU:
         if "singular" in str(trouble):
             raise LinAlgError(str(trouble)) from trouble
         raise MemoryError(str(trouble)) from trouble
+
+
+def ones_at(
+    rows: Indices, columns: Indices, shape: tuple[int, int]
+) -> sparse.csr_array:
+    """Sparse matrix of a shape with ones at places, (n,), that add up where equal."""
+    return sparse.csr_array((np.ones(len(rows)), (rows, columns)), shape=shape)
+
+
+def linked(first: Indices, second: Indices, count: int) -> tuple[int, Indices]:
+    """Number of groups of 0 to count - 1 that links join, and the group of each.
+
+    Links are between the `first` and `second` of them, (n_links,); the groups have the
+    shape (count,).
+    """
+    links = ones_at(first, second, (count, count))
+    n_groups, group = connected_components(links, directed=False)
+    return int(n_groups), np.asarray(group, dtype=np.intp)
 
 
 def read_only(field: Array) -> Array:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.arrays import Array, Indices, as_slice, in_rows
+from solver.arrays import Array, Indices, as_slice, in_rows, ones_at
 from solver.discrete.contact_groups import ContactGroup, Stacked
 from solver.laws import Contact
 
@@ -185,9 +185,8 @@ class Contacts(Mapping[str, Contact]):
             for numbers, component in zip(of_components, law.components, strict=True):
                 forces.append(numbers[law.points])
                 rows.append(component.above)
-        entries = np.concatenate(forces), np.concatenate(rows)
         shape = self.n_forces, n_rows
-        return sparse.csr_array((np.ones(len(entries[0])), entries), shape=shape)
+        return ones_at(np.concatenate(forces), np.concatenate(rows), shape)
 
     def of_points(self, fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
         """Stack fields of the points of each of `stacks`, (n_points, ...).

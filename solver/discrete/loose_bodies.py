@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
-from solver.arrays import Indices
+from solver.arrays import Indices, linked
 from solver.discrete.problem import Problem
 from solver.laws import Contact
 from solver.refusal import RefusedError, Words
@@ -59,12 +57,10 @@ def _groups(bodies: Indices, tied: Indices) -> Indices:
     """
     ground = int(bodies.max()) + 1
     first, second = np.append(bodies, ground)[tied]
-    size = ground + 1
-    links = sparse.coo_array((np.ones(len(first)), (first, second)), (size, size))
-    _, groups = connected_components(links, directed=False)
+    _, groups = linked(first, second, ground + 1)
     group_of_dofs = groups[bodies]
     group_of_dofs[group_of_dofs == groups[ground]] = -1
-    return np.asarray(group_of_dofs)
+    return group_of_dofs
 
 
 def _pairs_that_hold(problem: Problem, law: Contact) -> list[tuple[Indices, Indices]]:

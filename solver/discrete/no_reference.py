@@ -11,10 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
-from solver.arrays import Indices
+from solver.arrays import Indices, linked
 from solver.cache import CACHE, content_of
 from solver.discrete.contacts import Contacts
 from solver.laws import Contact, Interface, SlipFactor
@@ -90,9 +88,7 @@ def _are_glued_as_numbered(sides: Indices, numbering: Numbering) -> bool:
     keys = numbering.parts * n_dofs + numbering.dofs
     nodes, node_of_row = np.unique(keys, return_inverse=True)
     first, second = node_of_row[sides]
-    ones = np.ones(len(first))
-    links = sparse.coo_array((ones, (first, second)), shape=(len(nodes),) * 2)
-    n_glued, glued = connected_components(links, directed=False)
+    n_glued, glued = linked(first, second, len(nodes))
     # Each group of glued nodes has one degree of freedom, and no other group has it.
     dofs = nodes % n_dofs
     n_pairs = len(np.unique(glued * n_dofs + dofs))

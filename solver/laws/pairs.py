@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 from scipy import sparse
 
-from solver.arrays import Array, Flags, Indices
+from solver.arrays import Array, Flags, Indices, ones_at
 from solver.checks import Numbers, check, check_value
 from solver.laws.interface import Component, Interface
 from solver.refusal import RefusedError, Words
@@ -159,10 +159,7 @@ class Pairs(Interface):
     def _pairs_of_points(self) -> sparse.csr_array:
         """Matrix with 1 where a pair belongs to a point, shape (n_points, n_pairs)."""
         size = len(self.points)
-        places = self.points, np.arange(size)
-        return sparse.csr_array(
-            (np.ones(size), places), shape=(len(self.positions), size)
-        )
+        return ones_at(self.points, np.arange(size), (len(self.positions), size))
 
     def mean_by_point(self, values: Array) -> Array:
         """Mean over the pairs of each point: (n_pairs, ...) to (n_points, ...)."""

@@ -18,7 +18,7 @@ import scipy
 from scipy import sparse
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
-from solver.arrays import Array, Flags, Indices, sparse_factor
+from solver.arrays import Array, Flags, Indices, linked, ones_at, sparse_factor
 
 NONE = 1e-9
 """Eigenvalue of J J', whose entries are whole numbers, and share of a force, that count
@@ -38,22 +38,10 @@ def graph_of(jumps: sparse.csr_array) -> tuple[Indices, Indices]:
     return np.minimum(first, last), np.maximum(first, last)
 
 
-def trees_of(edges: tuple[Indices, Indices], ground: int) -> tuple[int, Indices]:
-    """Number of trees formed by edges, and the tree of every point.
-
-    Edges are the points at both ends, shape (n_edges,) each; trees have the shape
-    (ground + 1,).
-    """
-    size = len(edges[0])
-    links = sparse.csr_array((np.ones(size), edges), shape=(ground + 1, ground + 1))
-    count, number = connected_components(links, directed=False)
-    return int(count), number
-
-
 def _is_forest(jumps: sparse.csr_array) -> bool:
     """Check whether jumps form no ring, so that all are independent."""
     size, ground = jumps.shape
-    trees, _ = trees_of(graph_of(jumps), ground)
+    trees, _ = linked(*graph_of(jumps), ground + 1)
     return bool(size + trees == ground + 1)
 
 
@@ -74,13 +62,12 @@ def from_jumps(jumps: sparse.csr_array) -> tuple[sparse.csr_array, sparse.csr_ar
     """
     ground = jumps.shape[1]
     edges = graph_of(jumps)
-    count, number = trees_of(edges, ground)
+    count, number = linked(*edges, ground + 1)
     # The first point of a tree is its root, but the ground that of its own.
     _, roots = np.unique(number, return_index=True)
     standing = number[ground]
     roots[standing] = ground
-    points = np.arange(ground)
-    whole = sparse.csr_array((np.ones(ground), (points, number[:-1])), (ground, count))
+    whole = ones_at(np.arange(ground), number[:-1], (ground, count))
     return _along_branches(jumps, edges, roots), whole[:, np.arange(count) != standing]
 
 
@@ -98,10 +85,7 @@ def _along_branches(
     signs = np.asarray(jumps[branches, points]).ravel()
     step = sparse.csr_array((signs, (points, branches)), shape=(ground, size))
     held = parents < ground
-    ones = np.ones(np.count_nonzero(held))
-    beyond = sparse.csr_array(
-        (ones, (points[held], parents[held])), shape=(ground, ground)
-    )
+    beyond = ones_at(points[held], parents[held], (ground, ground))
     # Each pass hands the motion of all points to the points that hang on them.
     moved = step
     while step.nnz:
@@ -118,9 +102,7 @@ def _parents(
     others = roots[roots != ground]
     rows = np.concatenate([edges[0], others])
     ends = np.concatenate([edges[1], np.full(len(others), ground)])
-    links = sparse.csr_array(
-        (np.ones(len(rows)), (rows, ends)), shape=(ground + 1, ground + 1)
-    )
+    links = ones_at(rows, ends, (ground + 1, ground + 1))
     order, parents = breadth_first_order(links, ground, directed=False)
     points = np.setdiff1d(order, roots)
     return points, parents[points]

@@ -12,10 +12,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, linked
 from solver.cache import content_of
 from solver.checks import Numbers, check
 from solver.refusal import RefusedError, Words
@@ -275,10 +273,8 @@ class Mesh:
         """
         first, second = self.neighbours
         is_one = labels[first] == labels[second]
-        size = len(self.elements)
-        places = first[is_one], second[is_one]
-        links = sparse.coo_array((np.ones(len(places[0])), places), (size, size))
-        return np.asarray(connected_components(links, directed=False)[1])
+        _, pieces = linked(first[is_one], second[is_one], len(self.elements))
+        return pieces
 
 
 class Shape(Protocol):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.arrays import Array, power_of_two, read_only
+from solver.arrays import Array, ones_at, power_of_two, read_only
 from solver.discrete.problem import Problem
 from solver.latin.end.status_step import Certificate
 from solver.latin.iterate import Checkpoint, Iterate
@@ -182,8 +182,8 @@ def _sum_of_sides(problem: Problem) -> sparse.csr_array:
     nothing = np.zeros((2, 0), dtype=np.intp)
     sides = np.concatenate([nothing, *problem.cuts], axis=1)
     n_pairs = sides.shape[1]
-    entries = np.ones(sides.size), (np.tile(np.arange(n_pairs), 2), sides.ravel())
-    return sparse.csr_array(entries, shape=(n_pairs, problem.n_rows))
+    pairs = np.tile(np.arange(n_pairs), 2)
+    return ones_at(pairs, sides.ravel(), (n_pairs, problem.n_rows))
 
 
 def known_forces(
@@ -240,10 +240,8 @@ def balance_of_rows(
         rows.append(part.rows)
         points_of_rows.append(size + point_of_row)
         size += len(points)
-    positions = np.concatenate(points_of_rows), np.concatenate(rows)
-    balance = sparse.csr_array(
-        (np.ones(problem.n_rows), positions), shape=(size, problem.n_rows)
-    )
+    shape = size, problem.n_rows
+    balance = ones_at(np.concatenate(points_of_rows), np.concatenate(rows), shape)
     return balance, np.concatenate(needed)
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
-from solver.arrays import Array, Indices, as_slice, sparse_factor
+from solver.arrays import Array, Indices, as_slice, ones_at, sparse_factor
 from solver.discrete.problem import Problem
 from solver.latin.stages.blocks import Blocks
 from solver.latin.stages.group import Group
@@ -197,10 +197,8 @@ def _shared_basis(
     # One member's part of the basis serves all; only the macro unknowns differ.
     local = np.zeros((n_carrying, len(first)))
     local[np.repeat(np.arange(n_carrying), counts[:, 0]), position] = values[0]
-    entries = np.ones(columns.size), (columns.ravel(), np.arange(columns.size))
-    n_macro = stacked.shape[1]
-    assembly = sparse.csr_array(entries, shape=(n_macro, columns.size))
-    return local, assembly
+    shape = stacked.shape[1], columns.size
+    return local, ones_at(columns.ravel(), np.arange(columns.size), shape)
 
 
 def _solver(

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from solver.arrays import Array, largest_size, sparse_factor
+from solver.arrays import Array, largest_size, ones_at, sparse_factor
 from solver.discrete.problem import Problem
 from solver.latin.stages.rigid_balance import Balance
 from solver.latin.stages.rigid_forces import Loading, RigidForces
@@ -283,14 +283,12 @@ def _jumps(laws: list[Contact], n_rows: int) -> sparse.csr_array:
 
 def _difference(component: Component, n_rows: int) -> sparse.csr_array:
     """Jump of a component from fields of rows, shape (n_pairs, n_rows)."""
-    size = len(component.above)
-    difference = sparse.csr_array(
-        (np.ones(size), (np.arange(size), component.above)), (size, n_rows)
-    )
+    pairs = np.arange(len(component.above))
+    shape = len(pairs), n_rows
+    above = ones_at(pairs, component.above, shape)
     if component.below is None:
-        return difference
-    below = (np.ones(size), (np.arange(size), component.below))
-    return difference - sparse.csr_array(below, (size, n_rows))
+        return above
+    return above - ones_at(pairs, component.below, shape)
 
 
 def _compliance(laws: list[Contact], k: Array) -> Array:

@@ -15,10 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, linked
 from solver.checks import Numbers, check_value
 from solver.discrete.plane.makers.chains import chains_of
 from solver.discrete.plane.meshes import Mesh
@@ -155,10 +153,8 @@ class NamedMesh:
         tree = scipy.spatial.cKDTree(self.points)
         first, second = tree.query_pairs(SAME * self.size, output_type="ndarray").T
         apart = ~(owners[first] & owners[second]).any(axis=1)
-        links = np.ones(int(apart.sum())), (first[apart], second[apart])
-        return np.asarray(
-            connected_components(coo_array(links, (count, count)), directed=False)[1]
-        )
+        _, vertices = linked(first[apart], second[apart], count)
+        return vertices
 
     @cached_property
     def edges(self) -> list[Array]:
