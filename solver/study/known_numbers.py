@@ -43,8 +43,13 @@ class SolvedCase:
     def support(self) -> tuple[Array, Array]:
         """Pressing force and friction on a support, (n_points, n_instants) each, N."""
         contact = self.fields.contact("support")
-        assert contact.normal_force is not None
-        return contact.normal_force, contact.tangential_force
+        return self.pressing("support"), contact.tangential_force
+
+    def pressing(self, name: str) -> Array:
+        """Pressing force of an interface that opens, (n_points, n_instants), N."""
+        force = self.fields.contact(name).normal_force
+        assert force is not None
+        return force
 
     @property
     def slip(self) -> Array:
@@ -328,9 +333,8 @@ def weighed_wall(answer: SolvedCase) -> Iterator[Number]:
     pressing, brick = _forces(answer)
     found = 0.0
     for name in answer.problem.contacts:
-        force = answer.fields.contact(name).normal_force
-        if name.startswith("support") and force is not None:
-            found += float(force[:, -1].sum())
+        if name.startswith("support"):
+            found += float(answer.pressing(name)[:, -1].sum())
     yield "force on the ground", "N/m", 4.0 * (pressing + 4.0 * brick), found
 
 
@@ -386,9 +390,7 @@ def pressed_wires(answer: SolvedCase) -> Iterator[Number]:
     forces = {}
     for joint in joints:
         if joint.below is not None and joint.above < settings.n_wires:
-            pressing = answer.fields.contact(joint.name).normal_force
-            assert pressing is not None
-            forces[joint.name] = pressing[:, -1]
+            forces[joint.name] = answer.pressing(joint.name)[:, -1]
     name = max(forces, key=lambda name: float(forces[name].sum()))
     exact = settings.hertz(float(forces[name].sum()))
     yield from _pressed(answer.problem.contacts[name], forces[name], exact)
@@ -451,19 +453,10 @@ def dovetail(answer: SolvedCase) -> Iterator[Number]:
     side = next(side for side in settings.parts.sides if side.name.startswith("top"))
     width = settings.parts.shapes[side.body].shares(side.nodes).sum()
     across, upward = np.abs(settings.parts.contacts[0].normals[0])
+    names = [contact.name for contact in settings.parts.contacts]
     for instant, sign, words in ((turned, 1.0, "pulled"), (back, -1.0, "let go")):
         carried = 2.0 * (upward + sign * settings.friction * across)
         known = tractions[instant] * width / carried
-        found = _mean_normal_force(answer, instant)
+        flanks = [answer.pressing(name)[:, instant].sum() for name in names]
+        found = float(np.mean(flanks))
         yield f"normal force of a flank, {words}", "N", float(known), found
-
-
-def _mean_normal_force(answer: SolvedCase, instant: int) -> float:
-    """Mean of the normal forces of all contacts of a mesh at an instant, N."""
-    contacts = answer.settings.parts.contacts
-    mean = 0.0
-    for contact in contacts:
-        pressing = answer.fields.contact(contact.name).normal_force
-        assert pressing is not None
-        mean += float(pressing[:, instant].sum()) / len(contacts)
-    return mean

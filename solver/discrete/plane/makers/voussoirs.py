@@ -12,7 +12,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.cache import CACHE, content_of
 from solver.discrete.plane.bodies import Bodies
-from solver.discrete.plane.body import Body, Held, Load
+from solver.discrete.plane.body import Body, Held, Load, turned_by
 from solver.discrete.plane.joint import Joint
 from solver.discrete.plane.meshes import SIMPSON, Mesh, on_nodes
 from solver.discrete.probes import mean_held, reaction
@@ -277,10 +277,8 @@ class Ring:
     def backs(self) -> Array:
         """Positions of the nodes on the outer side, (voussoirs, n_nodes, 2), m."""
         shapes = np.stack([shape.nodes[self.back] for shape in self.shapes])
-        c = np.cos(self.turns)
-        s = np.sin(self.turns)
-        turns = np.stack([np.stack([c, s], axis=1), np.stack([-s, c], axis=1)], axis=1)
-        turned = shapes @ turns.swapaxes(1, 2)
+        # Turns are clockwise here.
+        turned = shapes @ turned_by(-self.turns).swapaxes(1, 2)
         return np.asarray(turned + self.origins[:, None])
 
     def under_fill(self, top: float) -> Array:
