@@ -55,7 +55,7 @@ class Trail:
         if isinstance(iterate, Answer):
             self.answer = iterate
             return
-        self.iterates.append(replace(iterate, bases=(), k_update=None))
+        self.iterates.append(replace(iterate, bases=(), k_state=None))
         size = 4 * iterate.outgoing.nbytes
         if len(self.iterates) > MOST:
             self.iterates[FIRST:-RECENT] = self.iterates[FIRST:-RECENT:2]

@@ -2,7 +2,6 @@
 
 from solver.latin.anderson import Anderson
 from solver.latin.direction.directions import Auto, Paper
-from solver.latin.direction.from_status import FromStatus
 from solver.latin.end.certified import Answer
 from solver.latin.end.status import Decision, Ending, Status
 from solver.latin.end.status_step import StatusStep
@@ -25,7 +24,6 @@ __all__ = [
     "Checkpoint",
     "Decision",
     "Ending",
-    "FromStatus",
     "Full",
     "Iterate",
     "Latin",

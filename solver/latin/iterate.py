@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,35 +20,23 @@ however far the stages are apart, so that an early iterate shows where it slips.
 
 
 @dataclass(frozen=True, eq=False)
-class UpdateProgress:
-    """State of the k update.
+class KState:
+    """Search direction of the next iteration, and whether it may still change.
 
     Attributes
     ----------
-    state
-        State of k: the first one, which may change ("first"), another one on trial
-        ("updated"), or one that stays as it is ("returned").
     k
-        Search direction of the next iteration, shape (n_rows,), scaled.
+        Search direction of the next iteration, shape (n_rows,), scaled. If it is
+        another one than before, that iteration begins from zero.
+    is_final
+        Whether k stays.
     count
-        In the state "first", successive iterations with hardly a change of status; in
-        "updated", iterations since the last trial.
-    status
-        Contact status of the last iteration, shape (n_points, n_instants), where k
-        follows it.
-    fields
-        W and F of the linear stage at the last trial, shape (n_rows, n_instants) each,
-        scaled. The next iteration starts from them if it has another k.
-    violation
-        The k-free indicator of these fields.
+        Iterations done while k may change.
     """
 
-    state: Literal["first", "updated", "returned"]
     k: Array
+    is_final: bool = True
     count: int = 0
-    status: NDArray[np.int8] | None = None
-    fields: tuple[Array, ...] = ()
-    violation: float = np.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,15 +53,15 @@ class Checkpoint:
         W + F/k of the linear stage, shape (n_rows, n_instants), scaled.
     bases
         Separated bases that hold it, one per substructure; empty for full fields.
-    k_update
-        State of the k update; None where the fields are those of another run.
+    k_state
+        Search direction, and its state; None where the fields are those of another run.
     """
 
     number: int
     seconds: float
     outgoing: Array
     bases: tuple[SharedBasis, ...] = ()
-    k_update: UpdateProgress | None = None
+    k_state: KState | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,8 +88,8 @@ class Iterate:
     bases
         Separated bases that hold the linear stage, one per substructure; empty for full
         fields.
-    k_update
-        State of the k update, with the k of the next iteration.
+    k_state
+        Search direction of the next iteration, and its state.
     """
 
     number: int
@@ -114,7 +101,7 @@ class Iterate:
     local_displacement: Array
     local_incoming: Array
     bases: tuple[SharedBasis, ...] = ()
-    k_update: UpdateProgress | None = None
+    k_state: KState | None = None
 
     @property
     def iterations(self) -> int:
@@ -124,15 +111,11 @@ class Iterate:
     @property
     def checkpoint(self) -> Checkpoint:
         """State from which the iteration can be resumed."""
-        k_update = self.k_update
-        if k_update is not None and k_update.k is not self.k:
-            # With another k, W and F stay and W + F/k changes.
-            displacement, force = k_update.fields
-            outgoing = read_only(displacement + force / k_update.k[:, None])
-            return Checkpoint(self.number, self.seconds, outgoing, k_update=k_update)
-        return Checkpoint(
-            self.number, self.seconds, self.outgoing, self.bases, self.k_update
-        )
+        k_state = self.k_state
+        if k_state is not None and k_state.k is not self.k:
+            zero = read_only(np.zeros_like(self.outgoing))
+            return Checkpoint(self.number, self.seconds, zero, k_state=k_state)
+        return Checkpoint(self.number, self.seconds, self.outgoing, self.bases, k_state)
 
     @property
     def boundary_displacement(self) -> Array:

@@ -101,14 +101,14 @@ class Iteration:
         coarse = None
         if start is None and latin.start is not None:
             coarse = latin.start.of(problem, STARTING * latin.stop.seconds)
-        if start is not None and start.k_update is not None:
-            self._k_update = start.k_update
+        if start is not None and start.k_state is not None:
+            self._k_state = start.k_state
         else:
             waves = math.inf
             if coarse is not None:
                 waves = wrong_waves(coarse)
-            self._k_update = latin.direction.begin(problem, start, waves)
-        self.k = self._k_update.k
+            self._k_state = latin.direction.begin(problem, start, waves)
+        self.k = self._k_state.k
         blocks = Blocks(problem.n_rows, problem.n_instants, latin.threads)
         self.linear = _linear_stage(problem, self.k, latin, blocks)
         self.local = LocalStage(
@@ -161,15 +161,13 @@ class Iteration:
     def choose_direction(self) -> None:
         """Choose the k of the next iteration."""
         # A k that stays needs no snapshot of the fields.
-        if self._k_update.state != "returned":
-            self._k_update = self._latin.direction.follow(
-                self.snapshot(), self._k_update
-            )
+        if not self._k_state.is_final:
+            self._k_state = self._latin.direction.follow(self.snapshot(), self._k_state)
 
     @property
     def has_new_k(self) -> bool:
         """Check whether the next iteration has another k, and so needs new stages."""
-        return self._k_update.k is not self.k
+        return self._k_state.k is not self.k
 
     def snapshot(self, number: int = 0, seconds: float = 0.0) -> Iterate:
         """Iterate with a number and a time in seconds."""
@@ -183,7 +181,7 @@ class Iteration:
             local_displacement=read_only(self.local.displacement),
             local_incoming=read_only(self.local.incoming),
             bases=self.linear.bases(),
-            k_update=self._k_update,
+            k_state=self._k_state,
         )
 
 

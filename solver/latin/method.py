@@ -8,7 +8,6 @@ from types import NoneType
 from solver.checks import FLAG, Count, InstanceOf, Number, check
 from solver.latin.anderson import Anderson
 from solver.latin.direction.directions import Auto, SearchDirection
-from solver.latin.direction.from_status import FromStatus
 from solver.latin.end.status_step import StatusStep
 from solver.latin.end.stop import Stop
 from solver.latin.stages.linear import Full
@@ -26,7 +25,7 @@ class Latin:
     Attributes
     ----------
     direction
-        Search direction k: `Auto`, `Paper`, or `FromStatus` of one of these.
+        Search direction k: `Auto` or `Paper`.
     linear
         Form of the fields in the linear stage: `Full`, or `PGD`.
     multiscale
@@ -57,7 +56,7 @@ class Latin:
     0.8
     """
 
-    direction: SearchDirection | FromStatus = Auto()
+    direction: SearchDirection = Auto()
     linear: Full | PGD = Full()
     multiscale: bool = True
     relaxation: float = 0.8
@@ -70,7 +69,7 @@ class Latin:
     def __post_init__(self) -> None:
         check(
             self,
-            direction=InstanceOf(SearchDirection, FromStatus),
+            direction=InstanceOf(SearchDirection),
             linear=InstanceOf(Full, PGD),
             multiscale=FLAG,
             relaxation=Number(0.0, 1.0, above=True),

@@ -18,7 +18,6 @@ import numpy as np
 from solver.arrays import Array, read_only
 from solver.discrete.problem import Problem
 from solver.latin.direction.directions import SearchDirection
-from solver.latin.direction.from_status import FromStatus
 from solver.latin.end.status import Decision, Ending, Status
 from solver.latin.end.status_step import StatusStep
 from solver.latin.iterate import Checkpoint, Iterate
@@ -79,7 +78,7 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
     RefusedError
         If the problem or the method remembers more than fields and sliders.
     """
-    _check_slabs(problem, latin, length)
+    _check_slabs(problem, length)
     instants = slice(0, min(1 + length, problem.n_instants))
     stop = latin.stop
     if np.isfinite(stop.accuracy):
@@ -99,18 +98,11 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
     return Slab(instants, _during(problem, instants), method)
 
 
-def _check_slabs(problem: Problem, latin: Latin, length: int) -> None:
+def _check_slabs(problem: Problem, length: int) -> None:
     """Refuse a problem that cannot be solved in slabs of `length` instants."""
     if length < 1:
         raise RefusedError(
             "slab", length, "instants, from 1 on", "give those of a cycle"
-        )
-    if isinstance(latin.direction, FromStatus):
-        raise RefusedError(
-            "k_update",
-            "status",
-            "a k that stays as it is in slabs of time",
-            "set it to none",
         )
     for name, law in problem.user_laws.items():
         if law.remembers:

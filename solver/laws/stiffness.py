@@ -6,6 +6,7 @@ Small k converges fast globally and slowly locally, large k the reverse
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -14,10 +15,15 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.laws.pairs import Pairs
 
-FRICTION_FACTOR = 2.0
-"""k of a friction point over the geometric mean of the two stiffnesses ES/s and ES/h.
-Of sines and decaying cycles 1 % of friction force takes at most 23 iterations with 2,
-28 with 1, 43 with 4 (measured)."""
+BETWEEN_RODS = 2.5
+"""k between rods over ES/s. From zero, 1 % of the friction force of strands of 3, 5, 10
+and 20 wires takes 24, 41, 66 and 129 iterations, 24, 38, 66 and more than 200 with 3,
+23, 48, 65 and 123 with 2, which takes more from coarser meshes (measured)."""
+SHORT_WAVES = 2.0
+"""Smallest k of rods after a start from a coarser mesh, over ES divided by the longest
+wavelength that is wrong. Of bars of 50 and 200 elements and a rope 1 % of the friction
+force takes 14, 6 and 19 iterations, 18, 8 and 18 with two thirds of it, 13, 6 and 24
+with one and a half times (measured)."""
 CONTACT_STIFFNESS = 7.0
 """k per area of a contact in the plane, times its length over E. 1 % of the contact
 force takes 8 to 14 iterations, with twice as much up to 20 (measured)."""
@@ -43,6 +49,8 @@ BETWEEN_BODIES = 0.5
 pair resist. Of arches of 31 to 121 voussoirs, whose abutment moves, 1 % of the contact
 force takes 15 to 46 iterations, 18 to 64 with twice as much; of two bodies on a slope
 12 to 41, and 11 to 73 (MATHEMATICS.md, 19)."""
+LINE_ON_SUPPORT = 2.0
+"""k of bodies of any shape on a rigid support over the same mean."""
 BETWEEN_LINES = 4.0
 """The same along joints of lines that rest on each other, times the root of the number
 of these joints: one of them slides far, as in a strand. Of two to six leaves on the
@@ -55,20 +63,27 @@ all slide; with `BETWEEN_BODIES` 156 to more than 250 (measured)."""
 class RodStiffness:
     """Stiffness of a rod along the interface.
 
-    The global length of the problem is the length s that is expected to slide, the
-    local one the distance h of its points. So k of a point is `FRICTION_FACTOR` times
-    the geometric mean of ES/s and ES/h, for which neither of both converges more slowly
-    than the other; a row has its share by tributary length, so that cuts change
-    nothing. Of the n contacts of a strand only those of the broken wire slide far: s is
-    a mean over all of them, and k grows by sqrt(n). For 1 % of the friction force of 20
-    wires that takes 65 iterations instead of 109 (measured). Where the section varies,
-    ES is that around the point.
+    Of a rod whose points are h apart, each resists the longest waves with
+    ES h (pi / 2s)^2, where s is the length that slides, and the shortest with 4 ES/h.
+    With k at the geometric mean of both, neither converges more slowly than the other:
+    that is pi ES/s, whatever h. Between rods k is `BETWEEN_RODS` ES/s, and s a mean
+    over all contacts: of those of a strand only the contacts of the broken wire slide
+    far. After a start from a coarser mesh short waves alone are wrong, so k is at least
+    `SHORT_WAVES` ES over their length. A row has its share by tributary length, so that
+    cuts change nothing. Where the section varies, ES is that around the point.
+
+    From zero, 1 % of the friction force takes 14, 49 and 149 iterations on 10, 50 and
+    200 elements of the bar on a sine. With the geometric mean of ES/s and ES/h it takes
+    17, 75 and more than 200 (measured).
 
     Attributes
     ----------
     modulus
-        Stiffness of the rod around each pair, shape (n_pairs,), or one for all pairs,
-        scaled.
+        ES of a rod of length L over L around each pair, shape (n_pairs,), or one for
+        all pairs, scaled.
+    sliding
+        Length over which the displacement on a support would vary without friction,
+        over L.
     elsewhere
         Factor on the paper's k of all rows that are not at contacts.
     on_cuts
@@ -76,24 +91,28 @@ class RodStiffness:
     """
 
     modulus: Array | float = 1.0
+    sliding: float = 1.0
 
     elsewhere: ClassVar[float] = 1.0
     on_cuts: ClassVar[float] = 10.0
-    """1 % of friction force takes 16 to 17 iterations, and 16 to 31 with 1
-    (measured)."""
+    """1 % of friction force takes 12 to 16 iterations of a bar in 1 to 50 pieces, and
+    13 to 32 with 1 (measured)."""
 
-    def choose(self, law: Pairs, k: Array, parts: float) -> None:
+    def choose(self, law: Pairs, k: Array, parts: float, waves: float) -> None:
         """Write k of interfaces into k of all rows, (n_rows,), scaled, in place.
 
-        `parts` is the number of interfaces over the share of one that slides, `k` that
-        of all rows, which is changed in place.
+        `parts` is the number of interfaces over the share of one that slides, `waves`
+        the length of the longest waves that a start leaves wrong, m.
         """
         pairs = law.interface_of_pairs
         length = law.sums(law.weights)[pairs]
         spacing = length / np.maximum(law.sizes - 1, 1)[pairs]
-        stiffness = FRICTION_FACTOR * np.sqrt(length / spacing * parts)
+        factor = BETWEEN_RODS
+        if law.is_on_support:
+            factor = math.pi
+        along = np.maximum(factor * parts / self.sliding, SHORT_WAVES * length / waves)
         for rows in law.components[-1].sides:
-            k[rows] = stiffness * law.weights / spacing * self.modulus
+            k[rows] = along * law.weights / spacing * self.modulus
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +142,7 @@ class BodyStiffness:
     elsewhere: ClassVar[float] = 8.0
     on_cuts: ClassVar[float] = 1.0
 
-    def choose(self, law: Pairs, k: Array, parts: float) -> None:
+    def choose(self, law: Pairs, k: Array, parts: float, waves: float) -> None:
         """Write the k of interfaces into that of all rows, as `RodStiffness.choose`.
 
         A thin body on a rigid support is squeezed, with the stiffness E / d of its
@@ -187,7 +206,7 @@ class NodalStiffness:
 
     The bodies as a whole resist a displacement of all pairs with one stiffness, and
     that of one pair alone, with its neighbours held, with another. k is their geometric
-    mean, as of rods (`RodStiffness`), times `FRICTION_FACTOR` on a rigid support, and
+    mean, as of rods (`RodStiffness`), times `LINE_ON_SUPPORT` on a rigid support, and
     times `BETWEEN_BODIES` elsewhere; along lines that rest on each other times
     `BETWEEN_LINES`.
 
@@ -213,11 +232,11 @@ class NodalStiffness:
     elsewhere: ClassVar[float] = BodyStiffness.elsewhere
     on_cuts: ClassVar[float] = BodyStiffness.on_cuts
 
-    def choose(self, law: Pairs, k: Array, parts: float) -> None:
+    def choose(self, law: Pairs, k: Array, parts: float, waves: float) -> None:
         """Write k of interfaces into k of all rows, as `RodStiffness.choose`."""
         factor = BETWEEN_BODIES
         if law.is_on_support:
-            factor = FRICTION_FACTOR
+            factor = LINE_ON_SUPPORT
         stiffness = factor * np.sqrt(self.whole * self.local)
         along = BETWEEN_LINES / factor * np.sqrt(self.lines)
         stiffness[:, 0] *= np.where(self.lines > 0, along, 1.0)[:, None]
@@ -225,8 +244,10 @@ class NodalStiffness:
             number = 0 if component is law.tangent else 1
             for side, rows in enumerate(component.sides):
                 k[rows] = stiffness[:, number, side]
+        if waves < np.inf:
+            self._choose_for_short_waves(law, k, waves)
 
-    def choose_for_short_waves(self, law: Pairs, k: Array, waves: float) -> None:
+    def _choose_for_short_waves(self, law: Pairs, k: Array, waves: float) -> None:
         """Raise k of lines of beams on a support, for errors of short wavelength.
 
         A line of the length l resists as a whole with E A / l, and waves of the length

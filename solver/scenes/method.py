@@ -6,7 +6,6 @@ from solver.latin import (
     PGD,
     Anderson,
     Auto,
-    FromStatus,
     Full,
     Latin,
     Nested,
@@ -41,14 +40,11 @@ def method_of(settings: Settings) -> Latin:
     )
 
 
-def _direction_of(settings: Settings) -> Paper | Auto | FromStatus:
-    """Search direction, with its update where settings ask for one."""
-    direction: Paper | Auto = Auto(settings.k_scale)
+def _direction_of(settings: Settings) -> Paper | Auto:
+    """Search direction, with the factor on it."""
     if settings.search_direction == "paper":
-        direction = Paper(settings.k_scale)
-    if settings.k_update == "status" and settings.applies("k_update"):
-        return FromStatus(direction)
-    return direction
+        return Paper(settings.k_scale)
+    return Auto(settings.k_scale)
 
 
 def _linear_stage_of(settings: Settings) -> Full | PGD:

@@ -81,8 +81,8 @@ class MethodSettings(param.Parameterized):
         ["paper", "auto"],
         "How k, the stiffness that joins the two stages of an iteration, is chosen. "
         "paper: from the length of a substructure. auto: at points that may slip, from "
-        "the length that is expected to slide and that of an element; between bodies "
-        "that turn out to slip nowhere, from their depth.",
+        "the length that is expected to slide; between bodies that turn out to slip "
+        "nowhere, from their depth.",
     )
     k_scale = METHOD.quantity(
         1.0,
@@ -157,15 +157,6 @@ class MethodSettings(param.Parameterized):
         ["zero", "nested"],
         "zero: start from nothing. nested: start from the solution on half the "
         "elements, which the incremental solver finds; the run time includes that.",
-    )
-    k_update = METHOD.choice(
-        "none",
-        ["none", "status"],
-        "none: k is as the search direction says. status: once stick and slip have "
-        "settled, k becomes smaller where points slip; taken back if that does not "
-        "help.",
-        title="Update of k",
-        applies=lambda settings: not _on_modes(settings),
     )
     finish = METHOD.choice(
         "at-once",

@@ -28,6 +28,7 @@ REMOVED = {
     "interpolation": "paths are linear between their points",
     "k_friction_scale": "k_scale is for all interfaces",
     "k_normal_scale": "k_scale is for all interfaces",
+    "k_update": "the automatic search direction suits sooner than k that follows slip",
 }
 """Settings of early versions that exist no more, with the reason."""
 NEAREST = 3

@@ -48,7 +48,6 @@ PLAIN: dict[str, Any] = {
     "linear_stage": "full",
     "acceleration": "none",
     "start": "zero",
-    "k_update": "none",
     "finish": "none",
 }
 """Settings common to the forms of LATIN; all others are those of the run."""
@@ -188,7 +187,6 @@ def forms_of(settings: Settings) -> dict[str, Settings]:
         "LATIN multiscale": {},
         name: auto,
         f"{name}, Anderson": anderson,
-        f"{name}, Anderson, k updated": {**anderson, "k_update": "status"},
         FAST: {**anderson, "finish": "at-once"},
         "LATIN PGD": reduced,
     }

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from itertools import groupby, islice
+from itertools import islice
 
 import numpy as np
 import pytest
-from runs import assert_goes_on, distance_of, errors, iterates, solved
+from runs import assert_goes_on, distance_of, errors, solved
 
 from solver.latin import Ending, iterations
-from solver.latin.direction import from_status
 from solver.latin.direction.directions import sliding_share
-from solver.latin.direction.from_status import CALM, TRIAL
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -54,15 +52,15 @@ def test_a_run_starts_from_no_mesh_that_has_other_instants():
 
 @pytest.mark.parametrize(
     ("setting", "sizes", "most"),
-    [("substructures", (1, 5, 50), 1.2), ("elements", (50, 200), 2.0)],
+    [("substructures", (1, 5, 50), 1.2), ("elements", (50, 200), 1.0)],
     ids=str,
 )
-def test_iterations_to_one_percent_hardly_depend_on(setting, sizes, most):
+def test_finer_cuts_and_meshes_take_hardly_more_iterations(setting, sizes, most):
     early = {"tolerance": 1e-20, "max_iterations": 60}
     found = [
         within(solved(options(**early, **{setting: size})), 0.01) for size in sizes
     ]
-    assert max(found) <= most * min(found)
+    assert max(found) <= most * found[0]
 
 
 @pytest.mark.parametrize("change", [{}, {"load": "random"}], ids=str)
@@ -91,65 +89,25 @@ def test_the_sliding_share_is_load_over_capacity(change, share):
     assert sliding_share(discretise(options(**change))) == pytest.approx(share)
 
 
-def updating(**changes: object) -> BarSettings:
-    return BarSettings.checked({"method": "paper", "k_update": "status", **changes})
-
-
 @pytest.mark.parametrize("load", PRESETS)
-def test_a_millionth_of_friction_force_takes_at_most_150_iterations(load):
-    settings = updating(**FAST, load=load, relaxation=1.0)
+def test_a_millionth_of_friction_force_takes_at_most_200_iterations(load):
+    settings = options(load=load, relaxation=1.0)
     problem = discretise(settings)
     distance = distance_of(problem)
-    found = islice(iterations(problem, method_of(settings)), 150)
+    found = islice(iterations(problem, method_of(settings)), 200)
     assert any(distance.of_friction_force(iterate) <= 1e-6 for iterate in found)
 
 
 @pytest.mark.parametrize("substructures", [1, 10])
 def test_acceleration_shortens_the_plain_iteration(substructures):
-    chosen = updating(substructures=substructures)
-    updated, plain = (
-        errors(one, 300) for one in (chosen, chosen.replace(k_update="none"))
+    chosen = options(substructures=substructures, start="zero")
+    accelerated, plain = (
+        errors(one, 300) for one in (chosen, chosen.replace(acceleration="none"))
     )
-    assert sum(updated > 1e-3) < sum(plain > 1e-3)
+    assert sum(accelerated > 1e-3) < 0.5 * sum(plain > 1e-3)
 
 
-@pytest.mark.parametrize(
-    "change", [{"load": "random"}, {"multiscale": False, "substructures": 3}], ids=str
-)
-def test_the_limit_is_the_same_once_k_is_updated(change):
-    solution = solved(updating(**FAST, tolerance=1e-24, max_iterations=3000, **change))
-    assert solution.iterate.k_update.state == "updated"
-    assert solution.status.ending is Ending.CONVERGED
-    assert solution.records[-1].error_force < 1e-8
-
-
-@pytest.mark.parametrize("acceleration", ["none", "anderson"])
-def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, acceleration):
-    monkeypatch.setattr(from_status, "SLIDING", 1e-9)
-    chosen = updating(**{**FAST, "acceleration": acceleration})
-    constant = iterates(chosen.replace(k_update="none"), CALM + 20)
-    found = iterates(chosen, 400)
-    states = [iterate.k_update.state for iterate in found]
-    assert [state for state, _ in groupby(states)] == ["first", "updated", "returned"]
-    # An iterate says what follows: the next is the first with the new k.
-    start = states.index("updated") + 1
-    back = states.index("returned") + 1
-    assert (back - start) % TRIAL == 0
-    assert np.array_equal(found[back].k, constant[0].k)
-    if (
-        back - start == TRIAL
-    ):  # from the state before the update, as if it had never been
-        assert np.allclose(
-            found[back].local_incoming, constant[start].local_incoming, atol=1e-15
-        )
-    assert distance_of(found[-1].problem).of_friction_force(found[-1]) < 1e-3
-
-
-@pytest.mark.parametrize("harm", [1.0, 1e-9])
-def test_a_run_without_acceleration_goes_on_from_any_checkpoint_to_the_bit(
-    monkeypatch, harm
-):
-    monkeypatch.setattr(from_status, "SLIDING", harm * from_status.SLIDING)
-    chosen = updating(**{**FAST, "acceleration": "none"})
-    for place in (2, CALM, CALM + 1, CALM + TRIAL):
-        assert_goes_on(chosen, CALM + TRIAL + 20, place)
+def test_a_run_without_acceleration_goes_on_from_any_checkpoint_to_the_bit():
+    chosen = options(acceleration="none")
+    for place in (2, 20):
+        assert_goes_on(chosen, 40, place)

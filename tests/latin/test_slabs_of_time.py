@@ -14,7 +14,6 @@ from solver.commands.cli import main
 from solver.discrete.problem import Problem
 from solver.latin import (
     Ending,
-    FromStatus,
     Latin,
     Stop,
     solve,
@@ -135,7 +134,6 @@ def test_the_command_solves_in_slabs(
     ("scene", "changes", "method", "length", "name"),
     [
         ("bar", {"friction_law": "slip-dependent"}, TIGHT, CYCLE, "friction_law"),
-        ("bar", {}, replace(TIGHT, direction=FromStatus()), CYCLE, "k_update"),
         ("bar", {}, TIGHT, 0, "slab"),
     ],
 )

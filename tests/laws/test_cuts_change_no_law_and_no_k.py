@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -85,8 +86,8 @@ def test_cuts_change_no_k_of_a_point(
     cut = cut_contact(normal=opens, stiffness_beside=stiffness_beside)
     whole = whole_contact(normal=opens, stiffness_beside=stiffness_beside)
     found, wanted = np.full((2, 8), np.nan)
-    stiffness_beside.choose(cut, found, 3.0)
-    stiffness_beside.choose(whole, wanted, 3.0)
+    stiffness_beside.choose(cut, found, 3.0, math.inf)
+    stiffness_beside.choose(whole, wanted, 3.0, math.inf)
     for first in (0, 4)[: 1 + opens]:
         of_points = cut.by_point(found[first : first + 4])
         assert of_points == pytest.approx(wanted[first : first + 3])
@@ -106,23 +107,25 @@ def two_sided(stiffness_beside: BodyStiffness) -> Contact:
 
 def test_k_of_a_body_is_in_proportion_to_its_modulus_and_to_area() -> None:
     found, wanted = np.zeros((2, 12))
-    BodyStiffness(3.0, 5.0).choose(two_sided(BodyStiffness(3.0, 5.0)), found, 1.0)
-    BodyStiffness(1.0, 1.0).choose(two_sided(BodyStiffness(1.0, 1.0)), wanted, 1.0)
+    BodyStiffness(3.0, 5.0).choose(
+        two_sided(BodyStiffness(3.0, 5.0)), found, 1.0, math.inf
+    )
+    BodyStiffness(1.0, 1.0).choose(
+        two_sided(BodyStiffness(1.0, 1.0)), wanted, 1.0, math.inf
+    )
     factors = np.repeat([3.0, 5.0, 3.0, 5.0], 3)
     assert found == pytest.approx(factors * wanted)
     assert wanted.reshape(4, 3)[:, 1] == pytest.approx(2.0 * wanted.reshape(4, 3)[:, 0])
 
 
-def test_k_of_a_rod_grows_with_its_stiffness_and_the_root_of_the_sticking_length() -> (
-    None
-):
+def test_k_of_a_rod_grows_with_its_stiffness_and_the_number_of_contacts() -> None:
     law = whole_contact()
     plain, more, stiff = np.zeros((3, 3))
-    RodStiffness().choose(law, plain, 1.0)
-    RodStiffness().choose(law, more, 4.0)
+    RodStiffness().choose(law, plain, 1.0, math.inf)
+    RodStiffness().choose(law, more, 4.0, math.inf)
     modulus = np.array([1.0, 2.0, 3.0])
-    RodStiffness(modulus).choose(law, stiff, 1.0)
-    assert more == pytest.approx(2.0 * plain)
+    RodStiffness(modulus).choose(law, stiff, 1.0, math.inf)
+    assert more == pytest.approx(4.0 * plain)
     assert stiff == pytest.approx(modulus * plain)
 
 
@@ -130,7 +133,7 @@ def test_bodies_that_stick_are_never_softer_and_as_stiff_as_their_depth() -> Non
     stiffness_beside = BodyStiffness(2.0, 3.0, depth=1e-3)
     law = two_sided(stiffness_beside)
     before = np.zeros(12)
-    stiffness_beside.choose(law, before, 1.0)
+    stiffness_beside.choose(law, before, 1.0, math.inf)
     after = before.copy()
     stiffness_beside.choose_sticking(law, after)
     assert np.all(after >= before)
@@ -145,6 +148,6 @@ def test_a_thin_body_on_a_support_is_squeezed_with_its_modulus_over_its_depth() 
     stiffness_beside = BodyStiffness(depth=1e-3)
     law = whole_contact(normal=True, stiffness_beside=stiffness_beside)
     k = np.zeros(8)
-    stiffness_beside.choose(law, k, 1.0)
+    stiffness_beside.choose(law, k, 1.0, math.inf)
     assert k[:3] == pytest.approx(law.weights / 1e-3)
     assert k[4:7] == pytest.approx(law.weights / 1e-3)

@@ -91,7 +91,7 @@ def test_a_run_says_where_it_found_no_equilibrium_though_forces_could_balance() 
 
 def test_a_rod_that_friction_alone_does_not_hold_is_told_so() -> None:
     run = solve(pulled_rod(10.0), watch=False)
-    assert run.status.ending is Ending.STALLED
+    assert run.status.ending in (Ending.STALLED, Ending.EXHAUSTED)
     assert "friction alone seems not to hold what is pulled" in run.status.advice
     assert solve(pulled_rod(1000.0), watch=False).is_certified
 

@@ -18,7 +18,7 @@ from solver.discrete import Rope, Side, SideComponent, Spring, Support, discreti
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity
-from solver.latin import PGD, Anderson, Auto, Checkpoint, FromStatus, Nested, Stop
+from solver.latin import PGD, Anderson, Auto, Checkpoint, Nested, Stop
 from solver.latin.end.status_step import StatusStep
 from solver.laws import Dirichlet, FrictionLaw, Neumann, SlipFactor
 from solver.refusal import RefusedError
@@ -246,7 +246,6 @@ METHODS: list[Case] = [
     (Stop(), {"seconds": -1.0}, "Stop.seconds"),
     (Stop(), {"sufficient": inf}, "Stop.sufficient"),
     (Auto(), {"scale": inf}, "Auto.scale"),
-    (FromStatus(), {"first": "auto"}, "FromStatus.first"),
     (PGD(), {"modes": 2.5}, "PGD.modes"),
     (Nested(list), {"coarser": [PROBLEM]}, "Nested.coarser"),
     (StatusStep(), {"at_once": None}, "StatusStep.at_once"),

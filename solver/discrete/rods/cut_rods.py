@@ -14,6 +14,11 @@ from solver.arrays import Array, Indices
 from solver.cache import CACHE
 from solver.discrete.problem import Problem
 from solver.discrete.rods.end import SIDES, End
+from solver.discrete.rods.loads import (
+    displacement_of,
+    force_of_strains,
+    sliding_length,
+)
 from solver.discrete.rods.pieces import Piece, RodPieces, content_without_friction
 from solver.discrete.rods.rod_rows import NO_ROW, RodRows
 from solver.discrete.rods.rods import Rods
@@ -134,7 +139,7 @@ class CutRods:
         """Substructures of a rod from left to right; `shared` are earlier operators."""
         rods = self._rods[rod]
         stiffness = self._stiffness(rods)
-        free_force = _free_force(rods, stiffness)
+        free_force = force_of_strains(rods, stiffness)
         inner_force = self._inner_force(rods, free_force)
         for piece in self._rows.pieces():
             rows = self._rows.rows_of(rod, piece)
@@ -191,8 +196,8 @@ class CutRods:
         for node, end in springs.items():
             if force is None:
                 force = np.zeros((piece.size + 1, len(rods.instants)))
-            seen = _seen(rods, end, piece.first + node)
-            force[node] += end.spring / self._scales.force * seen
+            held = displacement_of(end, rods, piece.first + node)
+            force[node] += end.spring / self._scales.force * held
         return force
 
     def _inner_force(self, rods: Rods, free_force: Array | None) -> Array | None:
@@ -287,7 +292,8 @@ class CutRods:
         A spring that holds the end is part of the rod: then the end is free.
         """
         if end.is_prescribed:
-            held = _seen(self._rods[0], end, node) / self._scales.displacement
+            held = displacement_of(end, self._rods[0], node)
+            held = held / self._scales.displacement
             return Dirichlet(rows, np.tile(held, (len(rows), 1)))
         if end.force is None:
             force = np.zeros(len(self._rods[0].instants))
@@ -301,9 +307,13 @@ class CutRods:
         rods = self._rods[rod]
         units = (self._scales.displacement, self._scales.force)
         component = self._rows.component_of(rod)
-        macro = None
-        if component.below is not None:
+        if component.below is None:
+            macro = None
+            sliding = sliding_length(rods) / rods.length
+        else:
+            # Of rods beside each other all slide, or those of a broken one alone.
             macro = self._macro_basis()
+            sliding = 1.0
         nodes = self._rows.nodes_of_pairs
         weights = rods.length * (self._shares[self._rows.rubbing] / rods.elements)
         # The strength is per length: a pair has that of its tributary length.
@@ -317,7 +327,9 @@ class CutRods:
             points=points,
             positions=positions,
             weights=weights,
-            stiffness_beside=RodStiffness(self._stiffness_at_nodes(rods)[nodes]),
+            stiffness_beside=RodStiffness(
+                self._stiffness_at_nodes(rods)[nodes], sliding
+            ),
             macro=macro,
             copies=copies,
         )
@@ -340,30 +352,3 @@ class CutRods:
         compliance = np.pad(1.0 / self._stiffness(rods), 1, mode="edge")
         in_series = 2.0 / (compliance[:-1] + compliance[1:])
         return in_series * (self._scales.displacement / rods.length)
-
-
-def _free_force(rods: Rods, stiffness: Array) -> Array | None:
-    """Axial force equivalent to the strains of heat and settlement in elements.
-
-    Shape (n_elements, n_instants), scaled as `stiffness`, (n_elements,); None where
-    nothing strains them.
-    """
-    strain = rods.strain
-    if rods.settlement is not None:
-        # Seen from a support that moves by s, a rod is as if it shrank by ds/dx.
-        moved = np.diff(rods.settlement, axis=0) * (rods.elements / rods.length)
-        if strain is None:
-            strain = -moved
-        else:
-            strain = strain - moved
-    if strain is None:
-        return None
-    return strain * stiffness[:, None]
-
-
-def _seen(rods: Rods, end: End, node: int) -> Array:
-    """Displacement of an end's clamp or spring on the support, (n_instants,), m."""
-    assert end.displacement is not None
-    if rods.settlement is None:
-        return end.displacement
-    return np.asarray(end.displacement - rods.settlement[node])

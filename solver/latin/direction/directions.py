@@ -11,8 +11,8 @@ import numpy as np
 from solver.arrays import Array, read_only
 from solver.checks import POSITIVE, check
 from solver.discrete.problem import Problem
-from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress
-from solver.laws import Contact, NodalStiffness, RodStiffness
+from solver.latin.iterate import Checkpoint, Iterate, KState
+from solver.laws import Contact, RodStiffness
 
 LOOK = 3
 """Iteration that shows whether bodies slip on each other anywhere. In the second,
@@ -57,17 +57,17 @@ class SearchDirection(ABC):
 
     def begin(
         self, problem: Problem, start: Checkpoint | None, waves: float = math.inf
-    ) -> UpdateProgress:
-        """State of the k update at the start of a run, or of a resumed run.
+    ) -> KState:
+        """Search direction at the start of a run, or of a resumed run.
 
         `waves` is the length of the longest waves that a start from a coarser mesh
         leaves wrong, m.
         """
-        return UpdateProgress("returned", self.of(problem))
+        return KState(self.of(problem))
 
-    def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
-        """State of the k update after an iteration, with the next iteration's k."""
-        return progress
+    def follow(self, iterate: Iterate, state: KState) -> KState:
+        """Search direction after an iteration, for the next one."""
+        return state
 
 
 @dataclass(frozen=True)
@@ -101,35 +101,33 @@ class Auto(SearchDirection):
 
     def begin(
         self, problem: Problem, start: Checkpoint | None, waves: float = math.inf
-    ) -> UpdateProgress:
-        """State of the k update at the start: k may change between bodies only.
+    ) -> KState:
+        """Search direction at the start, which may change between bodies only.
 
         In a run from the fields of another or from a coarser mesh, which are near, k
         stays.
         """
         if waves < math.inf:
             k = self.scale * automatic(problem, waves=waves)
-            return UpdateProgress("returned", read_only(k))
+            return KState(read_only(k))
         laws = problem.contacts.laws.values()
         has_bodies = any(law.opens and not law.is_on_support for law in laws)
         if start is None and has_bodies:
-            return UpdateProgress("first", self.of(problem))
-        return UpdateProgress("returned", self.of(problem))
+            return KState(self.of(problem), is_final=False)
+        return KState(self.of(problem))
 
-    def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
-        """State of the k update, which is complete in the third iteration.
+    def follow(self, iterate: Iterate, state: KState) -> KState:
+        """Search direction after an iteration, final after the third.
 
         k stays if any bodies slip on each other then.
         """
-        count = progress.count + 1
+        count = state.count + 1
         if count < LOOK:
-            return replace(progress, count=count)
+            return replace(state, count=count)
         if _slips_between_bodies(iterate):
-            return UpdateProgress("returned", progress.k)
+            return KState(state.k)
         # The fields of the first k mislead: the run begins again, from zero.
-        k = read_only(self.scale * automatic(iterate.problem, sticks=True))
-        zero = np.zeros_like(iterate.outgoing)
-        return UpdateProgress("returned", k, fields=(zero, zero))
+        return KState(read_only(self.scale * automatic(iterate.problem, sticks=True)))
 
 
 def _slips_between_bodies(iterate: Iterate) -> bool:
@@ -180,11 +178,9 @@ def automatic(
         k[second] *= stiffness_beside.on_cuts
     parts = _sliding_parts(problem)
     for law in laws:
-        law.stiffness_beside.choose(law, k, parts)
+        law.stiffness_beside.choose(law, k, parts, waves)
         if sticks and not isinstance(law.stiffness_beside, RodStiffness):
             law.stiffness_beside.choose_sticking(law, k)
-        if isinstance(law.stiffness_beside, NodalStiffness):
-            law.stiffness_beside.choose_for_short_waves(law, k, waves)
         # The spring in series comes last, as it softens any k of the bodies.
         _raise_above_slope(law, k)
         _soften_by_contact(law, k)

@@ -130,7 +130,7 @@ def answer_of_iterate(iterate: Iterate, residual: float, *, is_beside: bool) -> 
         local_displacement=iterate.local_displacement,
         local_incoming=iterate.local_incoming,
         bases=iterate.bases,
-        k_update=iterate.k_update,
+        k_state=iterate.k_state,
         residual=residual,
         force=read_only(iterate.boundary_force),
         is_beside=is_beside,
