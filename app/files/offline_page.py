@@ -21,7 +21,6 @@ from app.state import PageState
 from app.status import figures_line, status_line
 from app.templates import TEMPLATES
 from app.views.layout import shape_of
-from app.views.pieces import PiecesView
 from app.views.scene import Scene
 from app.views.type_size import TEXT
 from app.views.view import View
@@ -50,8 +49,6 @@ HEIGHTS = {
 }
 """Heights of pictures, px, by whether they are without loads, and whether the structure
 is high."""
-ROOM = 270.0, 220.0
-"""Size of a plot without its axes on a phone, px, and less, as its font may be wide."""
 APART = "span { margin-right: 14px; display: inline-block; }"
 """Style sheet of key figures."""
 SHOW = """
@@ -172,8 +169,6 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
             # wide one.
             for glyph in plot.select(Text):
                 glyph.text_font_size = TEXT
-        elif not isinstance(view, PiecesView):
-            view.lay_out(*ROOM)
         plot.tools = [
             tool for tool in plot.tools if not isinstance(tool, PointDrawTool)
         ]

@@ -97,7 +97,7 @@ class PiecesView(ExtraView):
         self._placed: PlacedPieces | None = None
         self._names: Sequence[str] = ()
         plot.on_event(Tap, self._tap)
-        self.follow_size(WIDTH, HEIGHT, self._show_again)
+        self.follow_size(WIDTH, HEIGHT)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the pieces of a frame, or nothing if the frame has none."""

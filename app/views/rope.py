@@ -64,9 +64,7 @@ class WireSection(ExtraView):
         self.bar = color_bar(plot, self.colors)
         rings = {key: KEYS[key] for key in ("slip →", "slip ←")} | {"selected": ERROR}
         self.mark(rings, fill_color="white", line_width=3, marker="circle")
-        keys = self.legend(*rings)
-        # Without an axis beside it the plot begins where the figure does.
-        keys.styles = {**keys.styles, "margin-left": "0"}
+        self.legend(*rings)
         plot.on_event(Tap, self._tap)
 
     def _show(self, cut: Any, frame: Frame, selection: Selection) -> None:

@@ -63,7 +63,7 @@ class Scene(View):
         plot.on_event(Pan, self._drag)
         plot.on_event(PanEnd, self._let_go)
         plot.on_event(Tap, self._select)
-        self.follow_size(WIDTH, HEIGHT, self._show_again)
+        self.follow_size(WIDTH, HEIGHT)
 
     def _draw(self, plot: figure) -> None:
         """Add all layers from the bottom to the top, and the legend."""

@@ -43,9 +43,6 @@ from solver.settings.scene import Settings
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
 SHORT = 200
 """Length of a curve up to which it is sent as a list: faster there than an array."""
-WIDTH = 380.0
-HEIGHT = 160.0
-"""Size of a plot until the browser reports its own, px."""
 
 
 HIDE = """
@@ -124,12 +121,9 @@ class View:
         """The figure for a card: alone, or laid out with another one."""
         return self.figure
 
-    def follow_size(
-        self, width: float, height: float, redraw: Callable[[], None]
-    ) -> None:
+    def follow_size(self, width: float, height: float) -> None:
         """Follow the size of the figure, px, from a size on; draw again for another."""
         self.lay_out(width, height)
-        self._redraw = redraw
         for name in self._size:
             self._figure.on_change(name, self._resize)
 
@@ -141,7 +135,8 @@ class View:
         # A figure that is out of sight reports a size of zero.
         self._size[name] = max(float(new), LEAST)
         with pn.io.hold():
-            self._redraw()
+            if self._shown is not None:
+                self.update(*self._shown)
 
     def _newest(self, frame: Frame) -> Frame:
         """The newest frame of the run of a frame."""
@@ -149,11 +144,6 @@ class View:
         if newest is None or newest.run.number != frame.run.number:
             return frame
         return newest
-
-    def _show_again(self) -> None:
-        """Update the view from the last frame again, if there is one."""
-        if self._shown is not None:
-            self.update(*self._shown)
 
     @property
     def room(self) -> Floats:
