@@ -209,8 +209,7 @@ def test_a_pile_stands_upright_in_its_soil() -> None:
     assert np.ptp(y) > 2.5 * np.ptp(x)
     # Positions along the bar grow downwards.
     assert y[frame.run.geometry.nodes[:, 0].argmax()] == pytest.approx(y.min())
-    words = view.sources["words"].data
-    assert "soil" in words["text"]
+    assert "soil" in named_in(view)
     for data in (view.sources["ground"].data, view.sources["strokes"].data):
         across = np.concatenate([np.ravel(line) for line in data["xs"]])
         assert np.nanmin(across) > 0.0
