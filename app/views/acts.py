@@ -10,7 +10,7 @@ import numpy as np
 from app.units import settled
 from app.views.colors import DISPLACEMENT, FORCE
 from app.views.layout import LONGEST, WORD, Layout, beside, is_aside, is_at_left
-from app.views.parts import gapped
+from app.views.parts import gapped, heads_of
 from app.views.supports import RADIUS
 from app.views.words import half_of_line
 from solver.arrays import Array
@@ -112,11 +112,8 @@ class Arrows:
     def heads(self) -> Array:
         """Corners of the heads, shape (n, 3, 2)."""
         tips = self.lines[:, -1]
-        along = self._along
-        length = np.minimum(HEAD, np.hypot(*(tips - self.lines[:, 0]).T))[:, None]
-        half = 0.5 * length * along[:, ::-1] * [-1.0, 1.0]
-        ends = tips - length * along
-        return np.stack([tips, ends + half, ends - half], axis=1)
+        lengths = np.minimum(HEAD, np.hypot(*(tips - self.lines[:, 0]).T))
+        return heads_of(tips, self._along, lengths[:, None])
 
     @property
     def strokes(self) -> Array:

@@ -248,8 +248,7 @@ class SlipPlane(View):
         # nothing yet.
         self.show("held", slips is None)
         if not slips:
-            for name in self.sources:
-                self.draw(name, [], [])
+            self.clear()
             return
         slip = slips["slip"]
         corners = slips["room"].T

@@ -13,7 +13,7 @@ from bokeh.events import Tap
 from app.frame import LINEAR, LOCAL, Frame, Selection
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO, WRITTEN
-from app.views.parts import bare, gapped
+from app.views.parts import bare, gapped, heads_of
 from app.views.placed_pieces import PlacedPieces, fitting
 from app.views.type_size import TEXT
 from app.views.view import ExtraView
@@ -98,14 +98,6 @@ class PiecesView(ExtraView):
         self._names: Sequence[str] = ()
         plot.on_event(Tap, self._tap)
         self.follow_size(WIDTH, HEIGHT)
-
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the pieces of a frame, or nothing if the frame has none."""
-        self._shown = frame, selection, ghost
-        super().update(frame, selection, ghost)
-        if "pieces" not in frame.extras:
-            for name, source in self.sources.items():
-                self.fill(name, **{column: [] for column in source.data})
 
     def _show(self, extra: Pieces, frame: Frame, selection: Selection) -> None:
         if self._names != extra.names:
@@ -263,11 +255,9 @@ def _arrows(tails: Array, spans: Array, longest: float) -> tuple[Array, Array]:
     sizes = np.maximum(sizes, SMALLEST)
     tails = tails[is_shown]
     tips = tails + sizes * along
-    length = np.minimum(HEAD, sizes)
-    ends = tips - length * along
-    half = 0.45 * length * along[:, ::-1] * [-1.0, 1.0]
-    heads = np.stack([tips, ends + half, ends - half], axis=1)
-    return gapped(np.stack([tails, ends], axis=1)), heads
+    lengths = np.minimum(HEAD, sizes)
+    shafts = np.stack([tails, tips - lengths * along], axis=1)
+    return gapped(shafts), heads_of(tips, along, lengths)
 
 
 def _open_gap(stage: StageFields) -> float:

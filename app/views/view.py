@@ -357,6 +357,11 @@ class View:
         else:
             self.show(name, has_data)
 
+    def clear(self, *names: str) -> None:
+        """Leave no data in sources, by default in all."""
+        for name in names or self.sources:
+            self.fill(name, **{column: [] for column in self.sources[name].data})
+
     def draw(self, name: str, x: ArrayLike, y: ArrayLike, title: str = "") -> None:
         """Draw a curve of values in SI, shape (n,) each."""
         self.fill(name, title, x=self.x(x), y=self.y(y))
@@ -371,7 +376,7 @@ class View:
         """Draw curves over one x, shape (n,), in SI; clear names without a curve."""
         for name, y, title in zip_longest(names, ys, titles):
             if y is None:
-                self.draw(name, [], [])
+                self.clear(name)
             else:
                 self.draw(name, x, y, title)
 
@@ -379,20 +384,15 @@ class View:
 class ExtraView(View):
     """A view of one extra, which the worker sends when the view is visible."""
 
-    _of_scene = ""
-
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the extra of a frame, if the frame has it."""
+        """Show the extra of a frame, or nothing if the frame has none."""
+        self._shown = frame, selection, ghost
         (name,) = self.needs
         extra = frame.extras.get(name)
-        scene = frame.run.settings.scene
-        if extra is not None:
-            self._of_scene = scene
+        if extra is None:
+            self.clear()
+        else:
             self._show(extra, frame, selection)
-        elif scene != self._of_scene:
-            # What is there is of the scene before.
-            for key, source in self.sources.items():
-                self.fill(key, **{column: [] for column in source.data})
 
     def _show(self, extra: Any, frame: Frame, selection: Selection) -> None:
         raise NotImplementedError

@@ -19,8 +19,6 @@ from solver.files.amounts import unit_for
 
 ROOM = 0.08
 """Room at the ends of the axes, as a share of their length."""
-FARTHEST = 2.5
-"""Largest value of an iterate that is in sight over the largest that is known."""
 FAINTEST = 0.35
 """Opacity of the oldest iterate."""
 BEYOND = 3.0
@@ -143,7 +141,7 @@ class Zigzag(ExtraView):
         self._show_field(extra, selection.stage, column)
 
     def _scale(self, frame: Frame, extra: Any, way: _Way, column: int) -> None:
-        """Set the limits: law and solution, and iterates up to a multiple of these."""
+        """Set the limits to law and solution, and to the iterates."""
         run = frame.run
         self.y.rename("friction force", "N/m")
         if run.settings.kind == "plane":
@@ -154,18 +152,9 @@ class Zigzag(ExtraView):
         slips, forces = way.points.T
         known_slip, known_force = way.star
         highest = max(float(extra["bound"].max()), abs(known_force))
-        farthest = FARTHEST * (abs(known_slip) or float(np.abs(slips).max()))
         key = (run.number, position, column)
-        self.x.hold(
-            key, [0.0, known_slip], np.clip(slips, -farthest, farthest), margin=ROOM
-        )
-        farthest = FARTHEST * (highest or float(np.abs(forces).max()))
-        self.y.hold(
-            key[:2],
-            [-highest, highest],
-            np.clip(forces, -farthest, farthest),
-            margin=ROOM,
-        )
+        self.x.hold(key, [0.0, known_slip], iterate=[slips], margin=ROOM)
+        self.y.hold(key[:2], [-highest, highest], iterate=[forces], margin=ROOM)
         self.across.hold(key[:2], extra["x"])
 
     def _show_law(self, extra: Any, way: _Way, column: int) -> None:

@@ -68,13 +68,12 @@ def test_figures_are_the_same_where_bokeh_does_not_check_their_values(
         settings.perform_document_validation.unset_value()
 
 
-def test_a_view_of_an_extra_has_none_of_the_scene_before() -> None:
+def test_a_view_of_an_extra_has_none_of_a_frame_before() -> None:
     """Singular values of a bar stood under a block until its own were there."""
     bar = frames_of("bar")[2]
     view = view_of(Spectra, bar)
+    assert len(view.sources["values"].data["xs"]) == bar.run.n_substructures
     shown(view, replace(bar, extras={}))
-    assert any(len(source.data["xs"]) for source in view.sources.values())
-    shown(view, replace(frames_of("block")[2], extras={}))
     for source in view.sources.values():
         assert not any(map(len, source.data.values()))
 
@@ -312,14 +311,6 @@ def test_each_substructure_has_its_curve_of_singular_values(
     frame = frame_of(settings, Needs(extras=frozenset({"spectra"})), ends=False)
     data = view_of(Spectra, frame).sources["values"].data
     assert len(data["xs"]) == len(data["part"]) == count
-
-
-def test_singular_values_wait_for_the_worker_to_send_them() -> None:
-    last = frames_of("bar")[1]
-    view = view_of(Spectra, last)
-    count = len(view.sources["values"].data["xs"])
-    shown(view, replace(last, extras={}))
-    assert count == last.run.n_substructures == len(view.sources["values"].data["xs"])
 
 
 def test_the_dot_of_the_instant_lies_on_the_loop() -> None:
