@@ -32,16 +32,16 @@ FLOWING = """
 line where the first has no room; or stand below each other."""
 WIDE = ":host { width: 100%; }"
 WIDER = ":host { width: calc(100% + 52px); }"
-"""Style sheets of a legend above a plot, without and with an axis at the left. It is as
-wide whatever its entries are: a figure is painted once more when the size of its legend
-changes."""
+"""Style sheets of a legend beside a plot, without and with an axis at the left. It is
+as wide whatever its entries are: a figure is painted once more when the size of its
+legend changes."""
 
 
 def legend(plot: figure, items: Sequence[Any], place: str = "above") -> Legend:
-    """A legend in one line: above the plot, or inside."""
+    """A legend in one line: above the plot, below it, or inside."""
     styles = {"font-size": TEXT}
     sheets = [CLOSE, FLOWING]
-    if place == "above":
+    if place != "center":
         sheets.append(WIDE)
         if any(axis.visible for axis in plot.yaxis):
             styles |= OVER_AXIS
