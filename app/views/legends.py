@@ -30,7 +30,7 @@ FLOWING = """
 """
 """Style sheet by which the entries of a legend follow each other, and take a second
 line where the first has no room; or stand below each other."""
-WIDE = ":host { width: 100%; }"
+WIDE = ":host { width: calc(100% - 8px); }"
 WIDER = ":host { width: calc(100% + 52px); }"
 """Style sheets of a legend beside a plot, without and with an axis at the left. It is
 as wide whatever its entries are: a figure is painted once more when the size of its
