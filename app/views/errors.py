@@ -40,27 +40,7 @@ CURVES = {
 """Title, colour, width and dash of the scalars of a history; the first lies on top."""
 
 
-class ErrorPlot(View):
-    """A plot over all iterations so far, also while an earlier iterate is shown."""
-
-    def _plot(
-        self,
-        name: str,
-        history: Mapping[str, Floats],
-        across: str,
-        up: str,
-        title: str = "",
-    ) -> None:
-        """Draw a column of a history over another where it is finite."""
-        nothing = np.zeros(0)
-        x = history.get(across, nothing)
-        y = history.get(up, nothing)
-        shown = np.isfinite(y) & np.isfinite(x)
-        # A logarithmic axis has no room for zero.
-        self.draw(name, x[shown], np.maximum(y[shown], LEAST), title)
-
-
-class Convergence(ErrorPlot):
+class Convergence(View):
     """Errors and indicators over iterations; the error of the force is bold.
 
     The answer stands at the foot, as its error is that of rounding. A tap goes back to
@@ -95,7 +75,7 @@ class Convergence(ErrorPlot):
         newest = self._newest(frame)
         history = _searched(newest)
         for column in CURVES:
-            self._plot(column, history, "iteration", column)
+            self.draw(column, *_curve(history, "iteration", column))
         errors = self.sources["error_force"].data
         self.draw("newest", errors["x"][-1:], errors["y"][-1:])
         self._show_ghost(ghost, has_errors=len(errors["x"]) > 0)
@@ -143,7 +123,19 @@ class Convergence(ErrorPlot):
         column = "estimated_error"
         if has_errors:
             column = "error_force"
-        self._plot("ghost", past, "iteration", column, self.ghost_name)
+        self.draw("ghost", *_curve(past, "iteration", column), self.ghost_name)
+
+
+def _curve(
+    history: Mapping[str, Floats], across: str, up: str
+) -> tuple[Floats, Floats]:
+    """A column of a history over another where it is finite, shape (n,) each."""
+    nothing = np.zeros(0)
+    x = history.get(across, nothing)
+    y = history.get(up, nothing)
+    shown = np.isfinite(y) & np.isfinite(x)
+    # A logarithmic axis has no room for zero.
+    return x[shown], np.maximum(y[shown], LEAST)
 
 
 def _searched(frame: Frame) -> dict[str, Floats]:
@@ -154,7 +146,7 @@ def _searched(frame: Frame) -> dict[str, Floats]:
     return {name: values[:count] for name, values in frame.history.items()}
 
 
-class ErrorTime(ErrorPlot):
+class ErrorTime(View):
     """Error over the run time of the method, set-up included, to compare settings."""
 
     name = "Error over run time"
@@ -187,8 +179,9 @@ class ErrorTime(ErrorPlot):
         past: Mapping[str, Floats] = {}
         if ghost is not None:
             past = ghost.history
-        self._plot("now", newest.history, "seconds", "error_force")
-        self._plot("ghost", past, "seconds", "error_force", self.ghost_name)
+        self.draw("now", *_curve(newest.history, "seconds", "error_force"))
+        curve = _curve(past, "seconds", "error_force")
+        self.draw("ghost", *curve, self.ghost_name)
         now = self.sources["now"].data
         ghosts = self.sources["ghost"].data
         self.draw("newest", now["x"][-1:], now["y"][-1:])
