@@ -92,10 +92,7 @@ class ContactForce(View):
             title = RUBBED
         self._show_strength(interface, fields, column, title)
         self.fill("cuts", x=self.x(interface.cuts))
-        selected = []
-        if selection.position is not None:
-            selected = [selection.position]
-        self.fill("position", x=self.x(selected))
+        self.fill("position", x=self.x(selection.marked))
         curves = [(curve.across, curve.up[:, column]) for curve in exact]
         self.draw("exact", *joined(curves))
         self._show_ghost(ghost, selection)

@@ -55,10 +55,7 @@ class StatusMap(View):
         self._show_image(run, interface, fields)
         self.show("open", interface.coefficient is not None)
         self.fill("now", y=self.y(run.instants[[run.column(selection.phase)]]))
-        selected = []
-        if selection.position is not None:
-            selected = [selection.position]
-        self.fill("position", x=self.x(selected))
+        self.fill("position", x=self.x(selection.marked))
         self.fill("cuts", x=self.x(interface.cuts))
         fronts = [(curve.across, curve.up) for curve in run.known("front")[:1]]
         self.draw("front", *joined(fronts))
