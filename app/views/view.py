@@ -166,13 +166,9 @@ class View:
         self._type = size
         if is_same or self._figure is None:
             return
-        self._magnify(self._figure)
+        magnify(self._figure, self._type, self.words)
         if self.beside is not None:
-            self._magnify(self.beside)
-
-    def _magnify(self, plot: figure) -> None:
-        """Set the type size of a figure."""
-        magnify(plot, self._type, self.words)
+            magnify(self.beside, self._type, self.words)
 
     @property
     def type_size(self) -> float:

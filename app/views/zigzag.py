@@ -12,7 +12,6 @@ from bokeh.plotting import figure
 from app.frame import LINEAR, LOCAL, Floats, Frame, Selection
 from app.views.colors import ERROR, EXACT, REFERENCE, STAGES, STICK
 from app.views.parts import hover
-from app.views.type_size import TEXT
 from app.views.view import ExtraView
 from solver.arrays import Array
 from solver.files.amounts import unit_for
@@ -25,10 +24,6 @@ BEYOND = 3.0
 """Length of lines without end over that of the axes."""
 RING = {"size": 16, "line_width": 2.5, "fill_alpha": 0}
 """Look of the ring about the newest stage."""
-TICKS = 4
-FEW_TICKS = 2
-"""Number of ticks that both figures have room for, beside each other, and in large
-type."""
 MARKERS = {LOCAL: "circle", LINEAR: "square"}
 
 
@@ -59,7 +54,6 @@ class Zigzag(ExtraView):
         plot = self.begin(
             ("slip", "m"), ("friction force", "N/m"), y_range=self.beside.y_range
         )
-        plot.xaxis.ticker.desired_num_ticks = TICKS
         self.add("dead", "HStrip", "y0 y1", fill_color=STICK, alpha=0.15, line_alpha=0)
         self.add("bounds", "HSpan", "y", color=REFERENCE, line_width=1)
         self.add("graph", color=STAGES[LOCAL], width=5, alpha=0.45)
@@ -107,17 +101,10 @@ class Zigzag(ExtraView):
         self.figure  # noqa: B018  # both are made when it is first asked for
         return self._grid
 
-    def _magnify(self, plot: figure) -> None:
-        """Set the type size of a figure, and as many ticks as fit."""
-        super()._magnify(plot)
-        ticks = TICKS if self._type == TEXT else FEW_TICKS
-        plot.xaxis.ticker.desired_num_ticks = ticks
-
     def _make_field(self) -> figure:
         """Make the figure of all points, with the y axis of the path."""
         plot = self.begin(("x", "m"), ("friction force", "N/m"))
         plot.yaxis.visible = False
-        plot.xaxis.ticker.desired_num_ticks = TICKS
         self.add("position", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         for stage in MARKERS:
             self.add(f"{stage} field", color=STAGES[stage], width=2)
