@@ -21,6 +21,7 @@ from app.state import PageState
 from app.status import figures_line, status_line
 from app.templates import TEMPLATES
 from app.views.layout import shape_of
+from app.views.pieces import PiecesView
 from app.views.scene import Scene
 from app.views.type_size import TEXT
 from app.views.view import View
@@ -49,6 +50,10 @@ HEIGHTS = {
 }
 """Heights of pictures, px, by whether they are without loads, and whether the structure
 is high."""
+PIECES = 200.0
+WIDE_PIECES = 400
+"""Height of a plot of pieces without words and keys, and its largest width, px: a
+broader one would stretch the pieces."""
 APART = "span { margin-right: 14px; display: inline-block; }"
 """Style sheet of key figures."""
 SHOW = """
@@ -169,6 +174,10 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
             # wide one.
             for glyph in plot.select(Text):
                 glyph.text_font_size = TEXT
+        if isinstance(view, PiecesView):
+            # Its words are not scaled either, and their lines are those of a phone.
+            view.lay_out(NARROWEST, PIECES)
+            plot.max_width = WIDE_PIECES
         plot.tools = [
             tool for tool in plot.tools if not isinstance(tool, PointDrawTool)
         ]
