@@ -302,3 +302,10 @@ class Selection:
     stage: str = LINEAR
     """Stage up to which the iteration is shown, `LOCAL` or `LINEAR`; after the linear
     stage it is whole."""
+
+    @property
+    def marked(self) -> Floats:
+        """The marked position, (1,), m; (0,) without one."""
+        if self.position is None:
+            return np.zeros(0, dtype=np.float32)
+        return np.array([self.position], dtype=np.float32)

@@ -40,11 +40,8 @@ class History:
 
     def at(self, iteration: int) -> Frame:
         """The last stored frame of the search up to an iteration, or the first."""
-        return self._frames[max(bisect_right(self._search(), iteration) - 1, 0)]
-
-    def _search(self) -> list[int]:
-        """Numbers of the stored iterates without the answer, ascending."""
-        return [kept.iteration for kept in self._frames if not kept.is_answer]
+        search = [kept.iteration for kept in self._frames if not kept.is_answer]
+        return self._frames[max(bisect_right(search, iteration) - 1, 0)]
 
     def _nbytes(self) -> int:
         return sum(kept.nbytes for kept in self._frames)

@@ -31,10 +31,10 @@ def message_of(
     setting.
     """
     definitions = settings.definitions()
-    remedy = _in_titles(settings, refusal.remedy)
+    remedy = in_titles(settings, refusal.remedy)
     definition = definitions.get(refusal.name)
     if definition is None:
-        limits = _in_titles(settings, refusal.allowed)
+        limits = in_titles(settings, refusal.allowed)
         refused = _written(refusal.value)
         # What is no setting may be named by words.
         subject = re.sub("^the ", "The ", refusal.name)
@@ -47,7 +47,7 @@ def message_of(
         *others, last = definition.columns
         table = f"a table of {', '.join(others)} and {last}"
         limits = f"{', '.join(definition.presets)}, or {table}"
-    limits = _in_titles(settings, _in_unit(limits, si, unit))
+    limits = in_titles(settings, _in_unit(limits, si, unit))
     refused = _written(refusal.value, unit)
     if name in ("", refusal.name):
         return f"{title} cannot be {refused}: {remedy}. Allowed: {limits}."
@@ -106,32 +106,14 @@ def _in_suitable_unit(amount: str, si: str) -> str:
     return unit_for(abs(value), si)(value)
 
 
-def advice_in_titles(settings: Settings, text: str) -> str:
-    """Advice on a run, with titles for names of settings, and powers as on the page."""
-    definitions = settings.definitions()
-    text = amounts_in_titles(settings, text)
-    text = re.sub(AMOUNT, lambda match: _in_suitable_unit(*match.groups()), text)
-    text = re.sub(POWER, lambda match: number(float(match[0]), EXACT), text)
-
-    def titled(match: re.Match[str]) -> str:
-        words = f"{match[1]}{title_of(definitions[match[2]])}"
-        if match[3]:
-            words += f" or {title_of(definitions[match[3]])}"
-        return words
-
-    # Many names are common words: they mean the setting where it is to be changed.
-    names = "|".join(definitions)
-    text = re.sub(
-        rf"\b((?i:raise|lower) )({names})\b(?: or ({names})\b)?", titled, text
-    )
-    keys = "|".join(name for name in definitions if "_" in name)
-    return re.sub(rf"\b({keys})\b", lambda match: title_of(definitions[match[0]]), text)
-
-
-def _in_titles(settings: Settings, text: str) -> str:
+def in_titles(settings: Settings, text: str) -> str:
     """A text with titles for names of settings, and numbers as on the page."""
     definitions = settings.definitions()
     text = amounts_in_titles(settings, text)
+    text = re.sub(AMOUNT, lambda match: _in_suitable_unit(*match.groups()), text)
+    text = re.sub(
+        f"{POWER}|{NUMBER}", lambda match: number(float(match[0]), EXACT), text
+    )
 
     def titled(match: re.Match[str]) -> str:
         lead = match[1] or ""
@@ -140,12 +122,10 @@ def _in_titles(settings: Settings, text: str) -> str:
             return lead + title_of(definitions[name])
         return match[0]
 
-    text = re.sub(NUMBER, lambda match: number(float(match[1]), EXACT), text)
     # Many names are common words, as friction: they mean the setting where it is to be
     # lowered or raised.
-    return re.sub(
-        rf"\b(lower |raise |or |\d to )?({'|'.join(definitions)})\b", titled, text
-    )
+    names = "|".join(definitions)
+    return re.sub(rf"\b((?i:lower|raise|or|\d to) )?({names})\b", titled, text)
 
 
 def _written(value: object, unit: Unit | None = None) -> str:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.frame import LOCAL, Extremes, Floats, Frame, Selection
-from app.refusals import advice_in_titles
+from app.refusals import in_titles
 from app.state import PageState
 from app.templates import html
 from app.units import percent, settled
@@ -163,7 +163,7 @@ def _details(frame: Frame) -> list[str]:
     ]
     # Of a run that failed the advice stands on the page itself, beside the details.
     if frame.status is not None and frame.status.ending is Ending.CONVERGED:
-        sentences.append(advice_in_titles(settings, frame.status.advice))
+        sentences.append(in_titles(settings, frame.status.advice))
     if not _is_lost(frame):
         for figure in _of_loop(frame):
             sentences.append(f"{figure.title}: {_over_time(frame, figure)}")
@@ -180,7 +180,7 @@ def _said(state: PageState) -> list[str]:
             remarks.insert(0, frame.status.advice)
         settings = frame.run.settings
         for remark in remarks:
-            messages.append(advice_in_titles(settings, remark))
+            messages.append(in_titles(settings, remark))
     return messages
 
 

@@ -21,7 +21,7 @@ from app.experiments.questions import (
     question_of,
 )
 from app.experiments.setting_range import FIELD, SettingRange
-from app.refusals import advice_in_titles, message_of
+from app.refusals import in_titles, message_of
 from app.state import WHAT_IF, PageState, answer
 from app.widgets import PlainText, button, download, up_to
 from solver.files.saved import dump
@@ -327,7 +327,7 @@ def _reason(plan: Plan, row: Row) -> str:
         plan.settings_at(row.number)
     except RefusedError as refusal:
         return message_of(refusal, plan.settings)
-    return advice_in_titles(plan.settings, row.reason)
+    return in_titles(plan.settings, row.reason)
 
 
 def _is_of(plan: Plan, settings: Settings) -> bool:

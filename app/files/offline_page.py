@@ -50,8 +50,10 @@ HEIGHTS = {
 }
 """Heights of pictures, px, by whether they are without loads, and whether the structure
 is high."""
-ROOM = 270.0, 220.0
-"""Size of a plot without its axes on a phone, px, and less, as its font may be wide."""
+PIECES = 200.0
+WIDE_PIECES = 400
+"""Height of a plot of pieces without words and keys, and its largest width, px: a
+broader one would stretch the pieces."""
 APART = "span { margin-right: 14px; display: inline-block; }"
 """Style sheet of key figures."""
 SHOW = """
@@ -172,8 +174,10 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
             # wide one.
             for glyph in plot.select(Text):
                 glyph.text_font_size = TEXT
-        elif not isinstance(view, PiecesView):
-            view.lay_out(*ROOM)
+        if isinstance(view, PiecesView):
+            # Its words are not scaled either, and their lines are those of a phone.
+            view.lay_out(NARROWEST, PIECES)
+            plot.max_width = WIDE_PIECES
         plot.tools = [
             tool for tool in plot.tools if not isinstance(tool, PointDrawTool)
         ]

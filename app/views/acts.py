@@ -10,8 +10,7 @@ import numpy as np
 from app.units import settled
 from app.views.colors import DISPLACEMENT, FORCE
 from app.views.layout import LONGEST, WORD, Layout, beside, is_aside, is_at_left
-from app.views.parts import gapped
-from app.views.supports import RADIUS
+from app.views.parts import gapped, heads_of
 from app.views.words import half_of_line
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act
@@ -112,11 +111,8 @@ class Arrows:
     def heads(self) -> Array:
         """Corners of the heads, shape (n, 3, 2)."""
         tips = self.lines[:, -1]
-        along = self._along
-        length = np.minimum(HEAD, np.hypot(*(tips - self.lines[:, 0]).T))[:, None]
-        half = 0.5 * length * along[:, ::-1] * [-1.0, 1.0]
-        ends = tips - length * along
-        return np.stack([tips, ends + half, ends - half], axis=1)
+        lengths = np.minimum(HEAD, np.hypot(*(tips - self.lines[:, 0]).T))
+        return heads_of(tips, self._along, lengths[:, None])
 
     @property
     def strokes(self) -> Array:
@@ -216,16 +212,9 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
     # Clear of the handle, also in large type.
     above = max(15.0, half_of_line(layout) + 7.0)
     if is_aside(act):
-        shift = [22.0 * away, -16.0]
-    elif _has_aside(layout, side):
-        # Clear of an arrow along the end of the bodies.
-        shift = [22.0 * away, above]
-    elif act.unit == "m":
-        # Clear of the rollers of an end that is moved.
-        shift = [(9.0 + 2.0 * RADIUS) * away, above]
-    else:
-        shift = [9.0 * away, above]
-    return arrows.points[-1] + shift, align
+        above = -16.0
+    # Clear of rollers, and of an arrow along the end of the bodies.
+    return arrows.points[-1] + np.array([22.0 * away, above]), align
 
 
 def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str]:
@@ -251,8 +240,6 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
     y = nearest[1] + above * up
     if is_left:
         x = ends.min() - 10.0
-        if _meets_arrows(act, layout, x):
-            x = -0.5 * float(layout.size[0] * layout.scale[0]) - 16.0
         return np.array([x, y]), "right"
     x = ends.max()
     surroundings = layout.canvas.surroundings
@@ -260,25 +247,6 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
         # Beside the ground, in which the arrows stand.
         x = max(x, 0.5 * float(layout.size[0] * layout.scale[0]))
     return np.array([x + 10.0, y]), "left"
-
-
-def _meets_arrows(act: Act, layout: Layout, right: float) -> bool:
-    """Check whether a label of a load, up to `right`, px, meets other arrows."""
-    side = act.where.partition(" ")[0]
-    left = right - layout.letter * (len(act.symbol) + WORD)
-    for other in layout.description.acts:
-        if other is act or not other.where.startswith(side):
-            continue
-        across = layout.local(other.points * layout.size)[:, 0]
-        if np.any((across > left) & (across < right)):
-            return True
-    return False
-
-
-def _has_aside(layout: Layout, side: str) -> bool:
-    """Check whether a load acts along a side."""
-    acts = [act for act in layout.description.acts if act.side == side]
-    return any(is_aside(act) for act in acts)
 
 
 def text_of(act: Act, column: int) -> str:

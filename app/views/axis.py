@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,8 @@ LONGEST = 16
 PERCENT = Unit("%", 0.01)
 FLOOR = 1e-15
 """Smallest value that a logarithmic axis shows."""
+FARTHEST = 2.0
+"""Largest value of an iterate in sight over the largest of what is known."""
 MOST_CELLS = 401
 """Largest number of cells of an image along a side, where points are not even."""
 EVEN = 1e-6
@@ -61,14 +63,29 @@ class Axis:
             self._si = unit
             self._key = None
 
-    def hold(self, key: object, *curves: ArrayLike, margin: float = 0.0) -> None:
+    def hold(
+        self,
+        key: object,
+        *curves: ArrayLike,
+        iterate: Sequence[ArrayLike] = (),
+        margin: float = 0.0,
+    ) -> None:
         """Extend the limits to curves in SI; limits are reset for another key.
+
+        Curves of an iterate, which may be far off, extend them to `FARTHEST` times the
+        largest of the others: they must not press these flat.
 
         With another key, as of another run, the axis chooses its unit again. The margin
         is a share of the distance between the limits, and is left free on either side;
         a logarithmic axis shows whole decades.
         """
         low, high = extent(curves)
+        if iterate:
+            largest = FARTHEST * max(abs(low), abs(high))
+            ends = np.array(extent(iterate))
+            if largest > 0.0:
+                ends = ends.clip(-largest, largest)
+            low, high = extent([ends, [low, high]])
         if key == self._key:
             held_low, held_high = self._held
             low = min(held_low, low)

@@ -30,10 +30,6 @@ FLAG = "#00966E"
 """Colour of the known number of a case."""
 GROUND = "#A07C4C"
 """Colour of the ground in which the bodies of a case are drawn."""
-WRITTEN = {False: "#212121", True: "#EEEEEE"}
-"""Colour of sentences in a plot, in the light and in the dark."""
-PAPER = {False: "#FFFFFF", True: "#121212"}
-"""Colour behind plots, in the light and in the dark."""
 MACRO = {"above": "#D55E00", "below": "#00795A"}
 MICRO = {"above": "#F0A868", "below": "#6CC5A4"}
 """Colours of macro and micro forces on the pieces above, or right, and below joints."""

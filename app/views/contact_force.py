@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run, Selection
-from app.views.axis import extent
 from app.views.colors import (
     BESIDE,
     CUT,
@@ -21,10 +20,8 @@ from app.views.view import View
 from solver.reference.closed_forms import ExactCurve
 from solver.study.comparison import FRICTION, OtherResults
 
-ROOM = 1.15
-FARTHEST = 2.0
-"""Limits of the axis over the largest known force, and largest force of an iterate that
-is in sight over it."""
+ROOM = 0.05
+"""Room at the ends of the axis of forces, as a share of its length."""
 RUBBED = "±µp"
 HELD = "most friction"
 """Names of the largest friction: of µ times the pressure, and of other laws."""
@@ -95,10 +92,7 @@ class ContactForce(View):
             title = RUBBED
         self._show_strength(interface, fields, column, title)
         self.fill("cuts", x=self.x(interface.cuts))
-        selected = []
-        if selection.position is not None:
-            selected = [selection.position]
-        self.fill("position", x=self.x(selected))
+        self.fill("position", x=self.x(selection.marked))
         curves = [(curve.across, curve.up[:, column]) for curve in exact]
         self.draw("exact", *joined(curves))
         self._show_ghost(ghost, selection)
@@ -152,7 +146,7 @@ class ContactForce(View):
 
     def _show_ghost(self, ghost: Frame | None, selection: Selection) -> None:
         if ghost is None:
-            self.draw("ghost", [], [], self.ghost_name)
+            self.clear("ghost")
             return
         run = ghost.run
         name = run.interface(selection.interface)
@@ -164,7 +158,7 @@ class ContactForce(View):
     def _scale(
         self, frame: Frame, name: str, fields: InterfaceFields, exact: list[Floats]
     ) -> None:
-        """Set the limits: known curves, and iterates up to a multiple of those."""
+        """Set the limits to known curves, and to the iterate."""
         run = frame.run
         key = (*frame.stage[:2], name)
         strength = run.interfaces[name].strength
@@ -174,19 +168,16 @@ class ContactForce(View):
             strengths = [strength, -strength]
         elif known is None:
             known = fields
-        low, high = extent([*_given(known), *exact, *strengths])
-        # An iterate may be far off: it must not press all others flat.
-        largest = FARTHEST * max(abs(low), abs(high))
-        iterate = np.clip(extent(_given(fields)), -largest, largest)
+        curves = [*_given(known), *exact, *strengths]
         self.x.hold(key, run.interfaces[name].positions)
-        self.y.hold(key, [ROOM * low, ROOM * high], iterate)
+        self.y.hold(key, *curves, iterate=_given(fields), margin=ROOM)
 
     def _show_beside(self, frame: Frame, time: float) -> None:
         """Show another program's friction at the instant nearest to a time, s."""
         results = (frame.extras.get("beside") or {}).get("brought")
         is_shown = isinstance(results, OtherResults) and results.quantity == FRICTION
         if not is_shown or not len(results.times):
-            self.draw("beside", [], [])
+            self.clear("beside")
             return
         near = results.times[np.abs(results.times - time).argmin()]
         rows = np.flatnonzero(results.times == near)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from typing import Any
 
 import numpy as np
@@ -13,16 +12,12 @@ from solver.discrete.structure import Act
 RUBS = "↑ rubs here"
 SOLVER = "the solver corrects a guess\nof the whole motion"
 ASIDE = 8.0
-UNDER = 26.0
+UNDER = 38.0
 BELOW = 26.0
 """Distances of marks from a side of the bodies, under an arrow, and below the contact,
 px."""
 PADDING = 10.0
 """Width of a mark beside its text, px."""
-BROAD = 420.0
-"""Length of bodies from which two marks have room beside each other, px."""
-NARROW = 13
-"""Number of letters for which a mark under an arrow has room beside bodies."""
 RUBBING = 0.55
 """Place of the mark of friction, over the length."""
 NONE: Columns = {"x": [], "y": [], "text": [], "text_align": []}
@@ -38,20 +33,13 @@ def hints_of(picture: Picture) -> Columns:
     if picture.draggable:
         driving = max(picture.draggable, key=_change)
         x = float(driving.points[:, 0].mean())
-        acts = _word_of(driving.act)
-        if length > BROAD:
-            texts.append(f"{acts} →")
-            anchors.append(np.array([x - ASIDE, 0.5 * top]))
-            aligns.append("right")
-        else:
-            # A long one has two lines, so that it ends within the picture.
-            lines = textwrap.wrap(f"↖ {acts}", NARROW)
-            texts.append("\n".join(lines))
-            right = layout.canvas.width - layout.origin[0]
-            begin = right - layout.letter * max(map(len, lines)) - PADDING
-            under = UNDER + 0.5 * (len(lines) - 1) * layout.row
-            anchors.append(np.array([min(x + ASIDE, begin), 0.5 * top - under]))
-            aligns.append("left")
+        text = f"↖ {_word_of(driving.act)}"
+        # It ends within the picture.
+        right = layout.canvas.width - layout.origin[0]
+        begin = right - layout.letter * len(text) - PADDING
+        texts.append(text)
+        anchors.append(np.array([min(x + ASIDE, begin), 0.5 * top - UNDER]))
+        aligns.append("left")
     texts.append(RUBS)
     aligns.append("center")
     rubbing = np.array([(RUBBING - 0.5) * length, np.nanmin(picture.points[:, 1])])

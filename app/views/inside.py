@@ -43,8 +43,7 @@ class ExtraScene(Scene):
 
     def _clear(self) -> None:
         """Leave nothing of the extra of a frame before."""
-        (name,) = self.needs
-        self.fill(name, **{key: [] for key in self.sources[name].data})
+        self.clear(*self.needs)
 
     def _show(self, extra: Any, picture: Picture) -> None:
         raise NotImplementedError
@@ -115,7 +114,7 @@ class Thrust(ExtraScene):
 
     def _clear(self) -> None:
         super()._clear()
-        self.fill("hinges", x=[], y=[])
+        self.clear("hinges")
 
     def _magnification(self, frame: Frame, layout: Layout) -> float:
         return 0.0

@@ -1,4 +1,4 @@
-"""Labels in the picture of a scene: loads, ground, joint, slope.
+"""Labels in the picture of a scene: loads, and the slope.
 
 Anchors of words are px of the figure; the picture's own lines are px from the middle of
 the foot.
@@ -11,23 +11,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.views.acts import Arrows, anchor_of, color_of, text_of
-from app.views.colors import FORCE, REFERENCE
-from app.views.colors import GROUND as GROUND_COLOR
-from app.views.layout import EACH, FOOTING, GROUND, is_opposite
+from app.views.colors import FORCE
+from app.views.layout import EACH, FOOTING, is_opposite
 from app.views.obstacles import ALONG, Obstacles
 from app.views.picture import Columns, Picture
-from app.views.supports import ground_edge
-from app.views.words import Word, around, box_of, in_rows, inside, is_inside, meets
+from app.views.words import Word, around, box_of, inside, meets
 from solver.arrays import Array
 from solver.discrete.structure import Act
 from solver.files.amounts import number
 
-NAMED = 0.4
-"""Largest length of the name of a joint over that of all bodies."""
-NAME = 14.0
-ASKEW = 0.3
-"""Distance of the name of a joint from its end, px, and slope of a joint from which on
-its name is next to it and not above or below."""
 FAR = 1.5
 """Distance of words of a weight from its arrow, over that of rows, from which on a line
 leads there."""
@@ -42,9 +34,6 @@ def labels_of(picture: Picture) -> tuple[Columns, Columns]:
     """
     obstacles = Obstacles(picture)
     words = _words_of_loads(picture, obstacles)
-    if not picture.layout.canvas.is_bare:
-        words += _name_of_ground(picture)
-        words += _name_of_joint(picture, obstacles)
     if picture.description.tilt is not None:
         words.append(_slope(picture))
     words = _apart(inside(picture.layout, words), obstacles)
@@ -175,82 +164,6 @@ def _slope(picture: Picture) -> Word:
     # Lower than the ground, which ends beside it where it hardly tilts.
     anchor = picture.page(end) + np.array([8.0 * side, -0.5 * layout.row])
     return Word(text, anchor, align, FORCE)
-
-
-def _name_of_ground(picture: Picture) -> list[Word]:
-    """Label of the ground of a case, if any."""
-    surroundings = picture.layout.canvas.surroundings
-    if surroundings is None:
-        return []
-    edge = ground_edge(picture.layout, picture.factor)
-    end = edge[0] + [8.0, -0.5 * GROUND]
-    align = "left"
-    if picture.layout.angle:
-        end = edge[-1] - [10.0, 0.5 * GROUND]
-        align = "center"
-    return [Word(surroundings.ground, picture.page(end), align, GROUND_COLOR)]
-
-
-def _name_of_joint(picture: Picture, obstacles: Obstacles) -> list[Word]:
-    """Label of the selected joint of bodies of any shape, if there is room.
-
-    Titles of plots name the joint, too: on bodies it would hide what it names.
-    """
-    layout = picture.layout
-    line = picture.halo
-    # Where bodies are small the name would cover them.
-    room = NAMED * layout.size[0] * layout.scale[0]
-    if layout.letter * len(picture.selected) > room:
-        return []
-    if not picture.is_of_any_shape or not len(line):
-        return []
-    places = []
-    for name in _names_at_ends(picture, line):
-        # Beside a joint that ends within bodies the next row may be free.
-        places += [name, *in_rows(layout, name, 1)]
-    places += _names_aside(picture, line)
-    # Below the ground of a case, say.
-    for name in _names_at_ends(picture, line):
-        places += in_rows(layout, name, MOST_ROWS)
-    free = [place for place in places if not obstacles.covered_by(place)]
-    return free[:1]
-
-
-def _names_at_ends(picture: Picture, line: Array) -> list[Word]:
-    """Labels of a joint beyond both ends of its line, (n, 2), px.
-
-    The end that is nearer to the middle of all bodies comes first.
-    """
-    middle = 0.5 * picture.layout.size * picture.layout.scale * [0.0, 1.0]
-    ends = line[[0, -1]]
-    nearer = int(np.hypot(*(ends - middle).T).argmin())
-    names = []
-    for end in (nearer, 1 - nearer):
-        away = ends[end] - ends[1 - end]
-        away /= np.hypot(*away) or 1.0
-        align = "center"
-        if abs(away[0]) > ASKEW:
-            align = "left" if away[0] > 0.0 else "right"
-        anchor = picture.page(ends[end] + NAME * away)
-        names.append(Word(picture.selected, anchor, align, REFERENCE))
-    return names
-
-
-def _names_aside(picture: Picture, line: Array) -> list[Word]:
-    """The name of a joint aside of each end of its line, (n, 2), px: of one in a notch.
-
-    It stands in the row of that end, or in the next one.
-    """
-    layout = picture.layout
-    names = []
-    for end in picture.page(line[[0, -1]]):
-        for rows in (0, 1, -1):
-            for side, align in ((1, "left"), (-1, "right")):
-                anchor = np.add(end, [side * NAME, rows * layout.row])
-                name = Word(picture.selected, anchor, align, REFERENCE)
-                if is_inside(layout, name):
-                    names.append(name)
-    return names
 
 
 def _apart(words: Sequence[Word], obstacles: Obstacles) -> list[Word]:

@@ -52,8 +52,8 @@ LONGEST = 1.6
 """Largest length of an arrow over that of the largest value when arrows were scaled."""
 WORD = 12
 """Letters of the value of a load, about."""
-NARROW = 560.0
-"""Width below which keys take two lines, px."""
+KEYS = 80
+"""Letters of the keys with their marks, about."""
 LARGER = 1.5
 """Scale of bodies over that with words at their sides, from which on words stand in
 rows above."""
@@ -417,10 +417,9 @@ def layout_of(canvas: Canvas) -> Layout:
     if canvas.is_bare:
         return Layout(canvas, 1)
     if canvas.is_upright:
-        return Layout(canvas, 4)
-    rows = 1
-    if canvas.width < NARROW:
-        rows = 2
+        return Layout(canvas, 5)
+    width = KEYS * LETTER * canvas.type_size
+    rows = math.ceil(min(width / canvas.width, 2.0))
     layouts = [
         Layout(canvas, key_rows, in_rows=in_rows)
         for in_rows, key_rows in product((False, True), (rows, 0))

@@ -10,8 +10,8 @@ from bokeh.plotting import figure
 
 from app.views.type_size import TEXT
 
-ABOVE = {"margin-left": "-52px", "top": "-1px"}
-"""Style of a legend that begins at the left end of the figure."""
+OVER_AXIS = {"margin-left": "-52px", "top": "-1px"}
+"""Style of a legend that begins at the left end of the figure, above its axis."""
 CLOSE = """
 .bk-grid { gap: 6px 5px !important; }
 .bk-item { gap: 4px !important; }
@@ -30,18 +30,22 @@ FLOWING = """
 """
 """Style sheet by which the entries of a legend follow each other, and take a second
 line where the first has no room; or stand below each other."""
-WRAPPED = ":host { width: calc(100% + 52px); }"
-"""Style sheet of a legend above a plot, which is as wide whatever its entries are: a
-figure is painted once more when the size of its legend changes."""
+WIDE = ":host { width: calc(100% - 8px); }"
+WIDER = ":host { width: calc(100% + 52px); }"
+"""Style sheets of a legend beside a plot, without and with an axis at the left. It is
+as wide whatever its entries are: a figure is painted once more when the size of its
+legend changes."""
 
 
 def legend(plot: figure, items: Sequence[Any], place: str = "above") -> Legend:
-    """A legend in one line: above the plot, or inside."""
+    """A legend in one line: above the plot, below it, or inside."""
     styles = {"font-size": TEXT}
     sheets = [CLOSE, FLOWING]
-    if place == "above":
-        styles |= ABOVE
-        sheets.append(WRAPPED)
+    if place != "center":
+        sheets.append(WIDE)
+        if any(axis.visible for axis in plot.yaxis):
+            styles |= OVER_AXIS
+            sheets.append(WIDER)
     box = Legend(
         items=items,
         orientation="horizontal",

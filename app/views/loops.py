@@ -22,7 +22,7 @@ from app.views.colors import (
     UNSEEN,
     scaled,
 )
-from app.views.flags import CaseFlag
+from app.views.flags import FLAGS, add_flag, show_flag
 from app.views.parts import gapped, hover
 from app.views.view import ExtraView, View
 from app.worker.cells import thinned
@@ -57,8 +57,9 @@ class HysteresisLoop(View):
         self.add("beside", color=BESIDE, width=2, dash="dashed")
         latin = self.add("LATIN", color=LATIN, width=2.5)
         self.add("now", "Scatter", color=ERROR, size=10)
-        self.flag = CaseFlag(self, plot)
-        self.legend("LATIN", "reference", "ghost", "beside", exact="closed form")
+        add_flag(self)
+        names = "LATIN", "reference", "ghost", "beside", *FLAGS
+        self.legend(*names, exact="closed form")
         hover(plot, [latin], {"displacement": "@x{0.000}", "force": "@y{0.000}"})
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
@@ -89,7 +90,7 @@ class HysteresisLoop(View):
         self.draw("ghost", *_ghost_of(run, ghost), self.ghost_name)
         self.draw("beside", *beside, source)
         self.draw("now", *frame.loop[:, [run.column(selection.phase)]])
-        self.flag.show(frame)
+        show_flag(self, frame)
 
 
 def _across(run: Run) -> tuple[str, str]:
@@ -135,10 +136,10 @@ class CyclePlot(ExtraView):
         lru_cache(maxsize=64)(lambda settings: n_cycles_of(settings) > 1)
     )
 
-    def _add_legend(self) -> None:
-        """Add a legend: first cycle, last cycle, and a text on further slip."""
+    def _add_legend(self, *names: str) -> None:
+        """Add a legend: first cycle, last cycle, glyphs, and a text on further slip."""
         self.mark({"first": SCALE[0], "last": SCALE[-1], "text": UNSEEN})
-        self.legend(first="cycle 1", last="last", text="text")
+        self.legend(*names, first="cycle 1", last="last", text="text")
 
     def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
         self.show("last", f"cycle {len(cycles['energy'])}")
@@ -191,8 +192,8 @@ class CycleEnergy(CyclePlot):
         plot = self.begin(("cycle",), ("energy", "J"))
         whole(plot.xaxis[0])
         bars = self.add("bars", "VBar", "x top color", width=0.7)
-        self.flag = CaseFlag(self, plot)
-        self._add_legend()
+        add_flag(self)
+        self._add_legend(*FLAGS)
         hover(plot, [bars], {"cycle": "@x", "energy": "@top{0.000}"})
 
     def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
@@ -200,12 +201,12 @@ class CycleEnergy(CyclePlot):
         energy = cycles["energy"]
         count = len(energy)
         self.x.span(0.5, count + 0.5)
-        # Room for the name of a known number.
-        self.y.hold(frame.stage, [0.0], 1.5 * energy)
+        # Room for a known number that is larger.
+        self.y.hold(frame.stage, [0.0], 1.2 * energy)
         self.fill(
             "bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count)
         )
-        self.flag.show(frame)
+        show_flag(self, frame)
 
 
 class SlipPlane(View):
@@ -247,8 +248,7 @@ class SlipPlane(View):
         # nothing yet.
         self.show("held", slips is None)
         if not slips:
-            for name in self.sources:
-                self.draw(name, [], [])
+            self.clear()
             return
         slip = slips["slip"]
         corners = slips["room"].T

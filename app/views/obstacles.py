@@ -9,7 +9,6 @@ from itertools import pairwise
 import numpy as np
 
 from app.views.acts import text_of
-from app.views.colors import GROUND as GROUND_COLOR
 from app.views.picture import Picture
 from app.views.words import Word, box_of, lies_on
 from solver.arrays import Array
@@ -41,11 +40,11 @@ class Obstacles:
         return lies_on(self.layout, word, *self._cells)
 
     def has_ground_below(self, word: Word) -> bool:
-        """Check whether a label covers the ground of a case, and is not its name.
+        """Check whether a label covers the ground of a case.
 
         Loads act through ground that is all around.
         """
-        if word.color == GROUND_COLOR or self._picture.is_around:
+        if self._picture.is_around:
             return False
         return lies_on(self.layout, word, *self._ground)
 

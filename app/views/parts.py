@@ -155,6 +155,16 @@ def gapped(lines: Array) -> Array:
     return np.concatenate([lines, gaps], axis=1).reshape(-1, 2)
 
 
+def heads_of(tips: Array, along: Array, lengths: Array) -> Array:
+    """Corners of the heads of arrows, (n, 3, 2), px.
+
+    From their tips, (n, 2), unit vectors along them, (n, 2), and lengths, (n, 1).
+    """
+    ends = tips - lengths * along
+    half = 0.5 * lengths * along[:, ::-1] * [-1.0, 1.0]
+    return np.stack([tips, ends + half, ends - half], axis=1)
+
+
 def joined(curves: Iterable[ArrayLike]) -> Array:
     """Join curves, shape (2, n) each, with NaN in between, shape (2, n_all)."""
     gap = np.full((2, 1), np.nan)

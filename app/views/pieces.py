@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import math
 import textwrap
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from bokeh.events import Tap
+from bokeh.models import Title
 
 from app.frame import LINEAR, LOCAL, Frame, Selection
 from app.views.axis import rounded_up
-from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO, WRITTEN
-from app.views.parts import bare, gapped
-from app.views.placed_pieces import PlacedPieces, fitting
-from app.views.type_size import TEXT
+from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO
+from app.views.parts import bare, gapped, heads_of
+from app.views.placed_pieces import PlacedPieces
+from app.views.type_size import LETTER
 from app.views.view import ExtraView
 from app.worker.pieces import Pieces, StageFields
 from solver.arrays import Array
@@ -24,18 +24,6 @@ from solver.files.amounts import number, unit_for
 WIDTH = 600.0
 HEIGHT = 260.0
 """Size of the figure until the browser reports its own, px."""
-FOOT = 1.4
-LETTER = 0.5
-LETTERS = 115
-"""Height of a line and width of a letter over their type size, and number of letters
-above the pieces, about."""
-TOLD = 0.4
-BESIDE = 0.34
-"""Largest share of the height for words above the pieces, and of the width beside."""
-RAGGED = 1.2
-"""Room of words in a narrow column over that of their letters."""
-KEYS = 78
-"""Number of letters below them, with the room of their marks."""
 HEAD = 7.0
 SMALLEST = 3.0
 """Length of the head of an arrow, and of an arrow of a force that just is not zero,
@@ -75,37 +63,22 @@ class PiecesView(ExtraView):
         for side in SIDES:
             self.add(f"macro {side}", color=MACRO[side], width=2.2)
             self.add(f"heads {side}", "Patches", "xs ys", color=MACRO[side])
-        self._told = self.add(
-            "words",
-            "Text",
-            "x y text",
-            text_color=WRITTEN[self.state.is_dark],
-            text_font_size=TEXT,
-            text_baseline="top",
-        )
+        self._told = Title(text_font_style="normal")
+        plot.add_layout(self._told, "above")
         marks = {
             "force on left, lower piece": MACRO["below"],
             "on right, upper piece": MACRO["above"],
             "pale: micro part": MICRO["above"],
         }
         self.mark(marks)
-        keys = self.legend(*marks, place="center")
-        keys.location = "bottom_left"
+        self.legend(*marks, place="below")
         self._scales: dict[str, float] = {}
         self._scene = ""
         self._tapped: int | None = None
         self._placed: PlacedPieces | None = None
         self._names: Sequence[str] = ()
         plot.on_event(Tap, self._tap)
-        self.follow_size(WIDTH, HEIGHT, self._show_again)
-
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the pieces of a frame, or nothing if the frame has none."""
-        self._shown = frame, selection, ghost
-        super().update(frame, selection, ghost)
-        if "pieces" not in frame.extras:
-            for name, source in self.sources.items():
-                self.fill(name, **{column: [] for column in source.data})
+        self.follow_size(WIDTH, HEIGHT)
 
     def _show(self, extra: Pieces, frame: Frame, selection: Selection) -> None:
         if self._names != extra.names:
@@ -115,7 +88,9 @@ class PiecesView(ExtraView):
         shown = frame.run.column(selection.phase)
         column = int(np.abs(extra.columns - shown).argmin())
         is_plane = frame.run.settings.kind == "plane"
-        placed = PlacedPieces(extra, self._box(extra, is_plane), is_plane)
+        self._figure.x_range.end = self.room[0]
+        self._figure.y_range.end = self.room[1]
+        placed = PlacedPieces(extra, self.room, is_plane)
         self._placed = placed
         self._scale(extra, frame)
         placed.move(stage, column, self._scales)
@@ -124,46 +99,19 @@ class PiecesView(ExtraView):
         self._show_forces(extra, stage, column)
         self._show_selected(extra, frame, selection)
         sentence = _sentence(extra, stage, column, selection.stage)
-        self._write(f"{sentence}.", f"{self._note(extra)}.")
+        self._write(f"{sentence}. {self._note(extra)}.")
 
-    def _box(self, extra: Pieces, is_plane: bool) -> Array:
-        """Corners of the room between text and legend, (2, 2), px.
+    def clear(self, *names: str) -> None:
+        """Leave no data in sources, and no text."""
+        super().clear(*names)
+        self._told.text = ""
 
-        The text stands above the pieces, or at their left if high ones are larger so.
-        """
-        width, height = self.room
-        self._figure.x_range.end = width
-        self._figure.y_range.end = height
-        size = self.type_size
-        letter = LETTER * size
-        below = math.ceil(min(KEYS * letter / width, 2.0))
-        line = FOOT * size
-        most = max(int(TOLD * height / line), 1)
-        self._rows = min(math.ceil(LETTERS * letter / width), most)
-        self._letters = max(int(width / letter), 20)
-        low = below * line
-        high = max(height - self._rows * line, low)
-        above = np.array([[0.0, low], [width, high]])
-        beside = np.array([[BESIDE * width, low], [width, height]])
-        rows = int((height - low) / line)
-        letters = int(BESIDE * width / letter)
-        is_larger = fitting(extra, beside).min() > fitting(extra, above).min()
-        if is_plane and is_larger and rows * letters > RAGGED * LETTERS:
-            self._rows = rows
-            self._letters = letters
-            return beside
-        return above
-
-    def _write(self, sentence: str, note: str) -> None:
-        """Write a sentence next to the pieces, and a note if there is room."""
+    def _write(self, text: str) -> None:
+        """Write a text above the pieces, in lines that are as long as the figure."""
         # A factor stays beside its sign.
-        text = f"{sentence} {note}".replace("× ", "×\N{NO-BREAK SPACE}")
-        lines = textwrap.wrap(text, self._letters)
-        if len(lines) > self._rows:
-            lines = textwrap.wrap(sentence, self._letters)
-        height = self.room[1]
-        self._told.glyph.text_color = WRITTEN[self.state.is_dark]
-        self.fill("words", x=[2.0], y=[height - 2.0], text=["\n".join(lines)])
+        text = text.replace("× ", "×\N{NO-BREAK SPACE}")
+        letters = int(self.room[0] / (LETTER * self.type_size))
+        self._told.text = textwrap.fill(text, max(letters, 20))
 
     def _show_forces(self, extra: Pieces, stage: StageFields, column: int) -> None:
         placed = self._placed
@@ -263,11 +211,9 @@ def _arrows(tails: Array, spans: Array, longest: float) -> tuple[Array, Array]:
     sizes = np.maximum(sizes, SMALLEST)
     tails = tails[is_shown]
     tips = tails + sizes * along
-    length = np.minimum(HEAD, sizes)
-    ends = tips - length * along
-    half = 0.45 * length * along[:, ::-1] * [-1.0, 1.0]
-    heads = np.stack([tips, ends + half, ends - half], axis=1)
-    return gapped(np.stack([tails, ends], axis=1)), heads
+    lengths = np.minimum(HEAD, sizes)
+    shafts = np.stack([tails, tips - lengths * along], axis=1)
+    return gapped(shafts), heads_of(tips, along, lengths)
 
 
 def _open_gap(stage: StageFields) -> float:

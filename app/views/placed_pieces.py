@@ -30,38 +30,32 @@ HAIR = 0.6
 """Largest length of a micro force over that of the longest arrow."""
 
 
-def fitting(extra: Pieces, box: Array) -> Array:
-    """Scales along x and y, (2,), px/m, with which pieces fill a box, (2, 2), px."""
-    size = np.nanmax(extra.corners, axis=0) - np.nanmin(extra.corners, axis=0)
-    return np.asarray(np.maximum(np.ptp(box, axis=0) - 2.0 * ROOM, SMALL) / size)
-
-
 class PlacedPieces:
     """Position of the pieces in a figure, px.
 
-    The pieces fill a box, of two corners, (2, 2), px. Each shrinks about its middle, so
-    that pieces that fit are a little apart.
+    The pieces fill the `room` of the figure, (2,), px. Each shrinks about its middle,
+    so that pieces that fit are a little apart.
     `outlines` are the moved corners, (n_corners, 2), and `quarters` the moved quarter
     points of sides, (n_sides, 2, 2); the longest arrow is `arrow` long. Micro forces of
     rods, which act along them, are drawn across, as otherwise they would hide in the
     outlines.
     """
 
-    def __init__(self, extra: Pieces, box: Array, is_plane: bool) -> None:
+    def __init__(self, extra: Pieces, room: Array, is_plane: bool) -> None:
         self._extra = extra
         self.is_plane = is_plane
         low = np.nanmin(extra.corners, axis=0)
         high = np.nanmax(extra.corners, axis=0)
         lows, highs = _boxes(extra.corners, extra.parts)
-        scale = fitting(extra, box)
+        scale = np.maximum(room - 2.0 * ROOM, SMALL) / (high - low)
         if is_plane:
             scale[:] = scale.min()
         else:
             thickness = float(np.median((highs - lows)[:, 1]))
-            room = scale[1] * (high - low)[1]
-            scale[1] = min(scale[1], THICK * room / thickness)
+            tallest = scale[1] * (high - low)[1]
+            scale[1] = min(scale[1], THICK * tallest / thickness)
         self._pixels = scale
-        self._origin = box.mean(axis=0) - 0.5 * (low + high) * scale
+        self._origin = 0.5 * room - 0.5 * (low + high) * scale
         sizes = (highs - lows) * scale
         self._middles = 0.5 * (lows + highs) * scale + self._origin
         self._share = 1.0 - np.minimum(APART, 0.25 * sizes) / sizes

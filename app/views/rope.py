@@ -13,7 +13,7 @@ from bokeh.palettes import Cividis256
 from app.frame import Frame, Selection
 from app.views.axis import extent, rounded_up
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
-from app.views.flags import CaseFlag
+from app.views.flags import FLAGS, add_flag, show_flag
 from app.views.parts import color_bar, explain, hover, joined
 from app.views.view import ExtraView
 from app.worker.geometry import MOST_WIRES
@@ -64,9 +64,7 @@ class WireSection(ExtraView):
         self.bar = color_bar(plot, self.colors)
         rings = {key: KEYS[key] for key in ("slip →", "slip ←")} | {"selected": ERROR}
         self.mark(rings, fill_color="white", line_width=3, marker="circle")
-        keys = self.legend(*rings)
-        # Without an axis beside it the plot begins where the figure does.
-        keys.styles = {**keys.styles, "margin-left": "0"}
+        self.legend(*rings)
         plot.on_event(Tap, self._tap)
 
     def _show(self, cut: Any, frame: Frame, selection: Selection) -> None:
@@ -127,8 +125,8 @@ class AxialForces(ExtraView):
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("stuck", color=REFERENCE, dash="dashed", width=1.5)
         self._lines = [self.add(wire, width=2) for wire in WIRES]
-        self.flag = CaseFlag(self, plot)
-        self.legend(*WIRES, stuck="all stick", exact="closed form")
+        add_flag(self)
+        self.legend(*WIRES, *FLAGS, stuck="all stick", exact="closed form")
         hover(plot, self._lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
 
     def _show(self, axial: Any, frame: Frame, selection: Selection) -> None:
@@ -150,7 +148,7 @@ class AxialForces(ExtraView):
         self.draw("stuck", x[: len(stuck)], stuck[:, column])
         self._color(names)
         self.draw_each(WIRES, x, axial["force"][:, :, column], names)
-        self.flag.show(frame)
+        show_flag(self, frame)
 
     def _color(self, names: list[str]) -> None:
         """Set colours and widths of the curves of wires."""

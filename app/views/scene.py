@@ -11,7 +11,17 @@ from bokeh.plotting import figure
 
 from app.frame import LINEAR, LOCAL, Frame, Run, Selection
 from app.views.acts import Arrows, Rest
-from app.views.colors import BODY, EDGE, FORCE, GHOST, GROUND, HINT, KEYS, UNSEEN
+from app.views.colors import (
+    BODY,
+    EDGE,
+    FORCE,
+    GHOST,
+    GROUND,
+    HALO,
+    HINT,
+    KEYS,
+    UNSEEN,
+)
 from app.views.hints import NONE, hints_of
 from app.views.labels import labels_of
 from app.views.layout import Canvas, Layout, layout_of
@@ -63,7 +73,7 @@ class Scene(View):
         plot.on_event(Pan, self._drag)
         plot.on_event(PanEnd, self._let_go)
         plot.on_event(Tap, self._select)
-        self.follow_size(WIDTH, HEIGHT, self._show_again)
+        self.follow_size(WIDTH, HEIGHT)
 
     def _draw(self, plot: figure) -> None:
         """Add all layers from the bottom to the top, and the legend."""
@@ -98,11 +108,13 @@ class Scene(View):
             line_width=2.5,
         )
         self._draw_words()
-        self.mark(KEYS | {"note": UNSEEN})
-        names = ["note"]
+        keys = {"note": UNSEEN}
         if not self.is_bare:
-            names = [*KEYS, "note"]
-        self._keys = self.legend(*names, place="center")
+            keys = KEYS | {"selected": HALO, "around": GROUND} | keys
+        self.mark(keys)
+        self._keys = self.legend(*keys, place="center")
+        for name in keys.keys() - KEYS.keys():
+            self.show(name, False, may_come_back=False)
         self._keys.location = "bottom_left"
 
     def _draw_words(self) -> None:
@@ -183,7 +195,7 @@ class Scene(View):
         if run.mechanism is not None and run.instants[column] >= run.collapses_at:
             past = picture.mechanism(run.mechanism)
         self.fill("ghost", **past)
-        self._show_keys(frame, layout, selection.stage)
+        self._show_keys(picture, selection.stage)
 
     def _layout_of(self, frame: Frame) -> Layout:
         type_size = float(self.words.removesuffix("px"))
@@ -249,11 +261,25 @@ class Scene(View):
                 rests.append(arrows.rest(float(getattr(drawn, name))))
         return rests
 
-    def _show_keys(self, frame: Frame, layout: Layout, stage: str) -> None:
-        """Show the keys of the status, with the magnification and the stage."""
+    def _show_keys(self, picture: Picture, stage: str) -> None:
+        """Show the keys of status, selected contact and ground; with a note.
+
+        The note has the magnification and the stage.
+        """
+        frame = picture.frame
+        layout = picture.layout
         run = frame.run
         can_open = any(each.strength is None for each in run.interfaces.values())
         self.show("open", can_open)
+        selected = ""
+        if len(picture.halo):
+            selected = picture.selected
+        self.show("selected", selected)
+        surroundings = layout.canvas.surroundings
+        ground = ""
+        if surroundings is not None:
+            ground = surroundings.ground
+        self.show("around", ground)
         notes = []
         if self._factor:
             notes.append(f"displacement × {number(self._factor)}")

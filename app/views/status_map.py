@@ -11,7 +11,7 @@ from bokeh.models import LinearColorMapper
 from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run, Selection
 from app.views.axis import edges, even_cells
 from app.views.colors import CUT, ERROR, EXACT, GHOST, KEYS, STATUS
-from app.views.flags import CaseFlag
+from app.views.flags import FLAGS, add_flag, show_flag
 from app.views.parts import hover, joined
 from app.views.view import View
 
@@ -36,8 +36,8 @@ class StatusMap(View):
         self.add("ghost", "Segment", "x0 y0 x1 y1", color=GHOST, width=1.5)
         self.add("now", "HSpan", "y", color=ERROR, line_width=2)
         self.add("position", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
-        self.flag = CaseFlag(self, plot)
-        self.legend(*KEYS, "ghost", front="closed form")
+        add_flag(self)
+        self.legend(*KEYS, "ghost", *FLAGS, front="closed form")
         hover(plot, [image], {"x": "$x{0.000}", "t": "$y{0.000}"})
         plot.on_event(Tap, self._select)
 
@@ -55,10 +55,7 @@ class StatusMap(View):
         self._show_image(run, interface, fields)
         self.show("open", interface.coefficient is not None)
         self.fill("now", y=self.y(run.instants[[run.column(selection.phase)]]))
-        selected = []
-        if selection.position is not None:
-            selected = [selection.position]
-        self.fill("position", x=self.x(selected))
+        self.fill("position", x=self.x(selection.marked))
         self.fill("cuts", x=self.x(interface.cuts))
         fronts = [(curve.across, curve.up) for curve in run.known("front")[:1]]
         self.draw("front", *joined(fronts))
@@ -70,7 +67,7 @@ class StatusMap(View):
         x0, x1 = self.x(lines[::2])
         y0, y1 = self.y(lines[1::2])
         self.fill("ghost", self.ghost_name, x0=x0, y0=y0, x1=x1, y1=y1)
-        self.flag.show(frame)
+        show_flag(self, frame)
 
     def _show_image(
         self, run: Run, interface: FrictionInterface, fields: InterfaceFields

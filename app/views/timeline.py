@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from itertools import zip_longest
 from typing import Any
@@ -16,7 +15,6 @@ from app.views.acts import unit_of
 from app.views.colors import ERROR, FORCE, UNSEEN
 from app.views.layout import is_equal, is_opposite
 from app.views.parts import bare
-from app.views.type_size import LETTER
 from app.views.view import View
 from solver.arrays import Array
 from solver.discrete.structure import Act, Description
@@ -24,18 +22,8 @@ from solver.files.amounts import Unit, number, unit_for
 
 PATHS = {"first": FORCE, "second": "#7A7A7A", "third": "#A0A0A0", "fourth": "#56B4E9"}
 """Colours of the paths; further paths are not drawn."""
-LOW = -1.7
-HIGH = 3.2
-MARKED = 1.4
-"""Ends of the axis up, and upper end of the line of an instant: paths lie between -1
-and 1, and their names above that line."""
-ANOTHER = 1.9
-"""Height of a further line of names, in units of that axis."""
-ENTRY = 22.0
-"""Width of the mark of a name with its distances, px."""
-WIDTH = 800.0
-HEIGHT = 44.0
-"""Size of the frame until the browser reports its own, px."""
+FARTHEST = 1.6
+"""Ends of the axis up: paths lie between -1 and 1."""
 MARK = "legend.change.emit()"
 """Script that has a legend painted. Bokeh makes its entries anew where one changes, and
 leaves their marks blank until something else in the figure is painted: of a run whose
@@ -49,10 +37,9 @@ class Timeline(View):
 
     def make(self) -> None:
         """Draw the paths, and follow the pointer along them."""
-        plot = bare(40, (-0.01, 1.01), (LOW, HIGH))
+        plot = bare(40, (-0.01, 1.01), (-FARTHEST, FARTHEST))
         self._figure = plot
         self._number = 0
-        self._names: list[str] = []
         axis = plot.xaxis
         axis.major_label_standoff = 1
         axis.axis_line_alpha = 0.4
@@ -61,11 +48,10 @@ class Timeline(View):
         axis.minor_tick_line_alpha = 0.0
         self.add("area", "VArea", "x y2", y1=0, color=FORCE, alpha=0.16)
         self.add("paths", "MultiLine", "xs ys line_color line_width")
-        look = {"y0": LOW, "y1": MARKED, "color": ERROR, "alpha": 0.5}
-        self.add("instant", "Segment", "", also="x", x0="x", x1="x", **look)
+        self.add("instant", "VSpan", "x", color=ERROR, alpha=0.5)
         self.add("now", "Scatter", color=FORCE, size=11)
         self.mark(PATHS | {"time": UNSEEN})
-        box = self.legend(*PATHS, "time", place="center")
+        box = self.legend(*PATHS, "time")
         mark = CustomJS(args={"legend": box}, code=MARK)
         for item in box.items:
             # Names of paths come with a run.
@@ -77,7 +63,6 @@ class Timeline(View):
         plot.add_tools(PanTool(dimensions="width"))
         for event in (Pan, Tap):
             plot.on_event(event, self._select)
-        self.follow_size(WIDTH, HEIGHT, self._make_room)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the load paths of a run, and the instant."""
@@ -120,16 +105,6 @@ class Timeline(View):
         if count <= 2 or not self.state.is_narrow:
             time = f"t in {unit.name}"
         self.show("time", time)
-        self._names = [*titles, time]
-        self._make_room()
-
-    def _make_room(self) -> None:
-        """Make room above the paths for all lines of their names."""
-        width = 0.0
-        for name in self._names:
-            width += LETTER * self.type_size * len(name) + ENTRY
-        lines = max(math.ceil(width / self.room[0]), 1)
-        self.figure.y_range.end = HIGH + ANOTHER * (lines - 1)
 
     def _select(self, event: Any) -> None:
         """Select the instant under the pointer."""

@@ -13,9 +13,6 @@ WORDS = "14px"
 LETTER = 0.56
 ROW = 1.3
 """Width of a letter and height of a line of words over their type size, about."""
-TICKS = 6
-FEW_TICKS = 3
-"""Number of ticks up an axis that have room, and those in large type."""
 FONT = value("Roboto, sans-serif")
 """The page's font, for texts that are drawn in plots."""
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
@@ -41,12 +38,6 @@ def magnify(plot: figure, size: str, words: str) -> None:
     for part in parts:
         if isinstance(part, models.Text):
             part.text_font_size = words
-    ticks = FEW_TICKS
-    if size == TEXT:
-        ticks = TICKS
-    for axis in plot.yaxis:
-        if isinstance(axis.ticker, models.ContinuousTicker):
-            axis.ticker.desired_num_ticks = ticks
     titled = [part for part in parts if isinstance(part, Title | ColorBar)]
     for model in (*plot.axis, *titled):
         names = [name for name in model.properties() if name.endswith("text_font_size")]

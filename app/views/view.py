@@ -43,9 +43,6 @@ from solver.settings.scene import Settings
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
 SHORT = 200
 """Length of a curve up to which it is sent as a list: faster there than an array."""
-WIDTH = 380.0
-HEIGHT = 160.0
-"""Size of a plot until the browser reports its own, px."""
 
 
 HIDE = """
@@ -124,12 +121,9 @@ class View:
         """The figure for a card: alone, or laid out with another one."""
         return self.figure
 
-    def follow_size(
-        self, width: float, height: float, redraw: Callable[[], None]
-    ) -> None:
+    def follow_size(self, width: float, height: float) -> None:
         """Follow the size of the figure, px, from a size on; draw again for another."""
         self.lay_out(width, height)
-        self._redraw = redraw
         for name in self._size:
             self._figure.on_change(name, self._resize)
 
@@ -141,7 +135,8 @@ class View:
         # A figure that is out of sight reports a size of zero.
         self._size[name] = max(float(new), LEAST)
         with pn.io.hold():
-            self._redraw()
+            if self._shown is not None:
+                self.update(*self._shown)
 
     def _newest(self, frame: Frame) -> Frame:
         """The newest frame of the run of a frame."""
@@ -149,11 +144,6 @@ class View:
         if newest is None or newest.run.number != frame.run.number:
             return frame
         return newest
-
-    def _show_again(self) -> None:
-        """Update the view from the last frame again, if there is one."""
-        if self._shown is not None:
-            self.update(*self._shown)
 
     @property
     def room(self) -> Floats:
@@ -176,13 +166,9 @@ class View:
         self._type = size
         if is_same or self._figure is None:
             return
-        self._magnify(self._figure)
+        magnify(self._figure, self._type, self.words)
         if self.beside is not None:
-            self._magnify(self.beside)
-
-    def _magnify(self, plot: figure) -> None:
-        """Set the type size of a figure."""
-        magnify(plot, self._type, self.words)
+            magnify(self.beside, self._type, self.words)
 
     @property
     def type_size(self) -> float:
@@ -367,6 +353,11 @@ class View:
         else:
             self.show(name, has_data)
 
+    def clear(self, *names: str) -> None:
+        """Leave no data in sources, by default in all."""
+        for name in names or self.sources:
+            self.fill(name, **{column: [] for column in self.sources[name].data})
+
     def draw(self, name: str, x: ArrayLike, y: ArrayLike, title: str = "") -> None:
         """Draw a curve of values in SI, shape (n,) each."""
         self.fill(name, title, x=self.x(x), y=self.y(y))
@@ -381,7 +372,7 @@ class View:
         """Draw curves over one x, shape (n,), in SI; clear names without a curve."""
         for name, y, title in zip_longest(names, ys, titles):
             if y is None:
-                self.draw(name, [], [])
+                self.clear(name)
             else:
                 self.draw(name, x, y, title)
 
@@ -389,20 +380,15 @@ class View:
 class ExtraView(View):
     """A view of one extra, which the worker sends when the view is visible."""
 
-    _of_scene = ""
-
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the extra of a frame, if the frame has it."""
+        """Show the extra of a frame, or nothing if the frame has none."""
+        self._shown = frame, selection, ghost
         (name,) = self.needs
         extra = frame.extras.get(name)
-        scene = frame.run.settings.scene
-        if extra is not None:
-            self._of_scene = scene
+        if extra is None:
+            self.clear()
+        else:
             self._show(extra, frame, selection)
-        elif scene != self._of_scene:
-            # What is there is of the scene before.
-            for key, source in self.sources.items():
-                self.fill(key, **{column: [] for column in source.data})
 
     def _show(self, extra: Any, frame: Frame, selection: Selection) -> None:
         raise NotImplementedError

@@ -12,25 +12,18 @@ from bokeh.plotting import figure
 from app.frame import LINEAR, LOCAL, Floats, Frame, Selection
 from app.views.colors import ERROR, EXACT, REFERENCE, STAGES, STICK
 from app.views.parts import hover
-from app.views.type_size import TEXT
 from app.views.view import ExtraView
 from solver.arrays import Array
 from solver.files.amounts import unit_for
 
 ROOM = 0.08
 """Room at the ends of the axes, as a share of their length."""
-FARTHEST = 2.5
-"""Largest value of an iterate that is in sight over the largest that is known."""
 FAINTEST = 0.35
 """Opacity of the oldest iterate."""
 BEYOND = 3.0
 """Length of lines without end over that of the axes."""
 RING = {"size": 16, "line_width": 2.5, "fill_alpha": 0}
 """Look of the ring about the newest stage."""
-TICKS = 4
-FEW_TICKS = 2
-"""Number of ticks that both figures have room for, beside each other, and in large
-type."""
 MARKERS = {LOCAL: "circle", LINEAR: "square"}
 
 
@@ -61,7 +54,6 @@ class Zigzag(ExtraView):
         plot = self.begin(
             ("slip", "m"), ("friction force", "N/m"), y_range=self.beside.y_range
         )
-        plot.xaxis.ticker.desired_num_ticks = TICKS
         self.add("dead", "HStrip", "y0 y1", fill_color=STICK, alpha=0.15, line_alpha=0)
         self.add("bounds", "HSpan", "y", color=REFERENCE, line_width=1)
         self.add("graph", color=STAGES[LOCAL], width=5, alpha=0.45)
@@ -109,17 +101,10 @@ class Zigzag(ExtraView):
         self.figure  # noqa: B018  # both are made when it is first asked for
         return self._grid
 
-    def _magnify(self, plot: figure) -> None:
-        """Set the type size of a figure, and as many ticks as fit."""
-        super()._magnify(plot)
-        ticks = TICKS if self._type == TEXT else FEW_TICKS
-        plot.xaxis.ticker.desired_num_ticks = ticks
-
     def _make_field(self) -> figure:
         """Make the figure of all points, with the y axis of the path."""
         plot = self.begin(("x", "m"), ("friction force", "N/m"))
         plot.yaxis.visible = False
-        plot.xaxis.ticker.desired_num_ticks = TICKS
         self.add("position", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         for stage in MARKERS:
             self.add(f"{stage} field", color=STAGES[stage], width=2)
@@ -143,7 +128,7 @@ class Zigzag(ExtraView):
         self._show_field(extra, selection.stage, column)
 
     def _scale(self, frame: Frame, extra: Any, way: _Way, column: int) -> None:
-        """Set the limits: law and solution, and iterates up to a multiple of these."""
+        """Set the limits to law and solution, and to the iterates."""
         run = frame.run
         self.y.rename("friction force", "N/m")
         if run.settings.kind == "plane":
@@ -154,18 +139,9 @@ class Zigzag(ExtraView):
         slips, forces = way.points.T
         known_slip, known_force = way.star
         highest = max(float(extra["bound"].max()), abs(known_force))
-        farthest = FARTHEST * (abs(known_slip) or float(np.abs(slips).max()))
         key = (run.number, position, column)
-        self.x.hold(
-            key, [0.0, known_slip], np.clip(slips, -farthest, farthest), margin=ROOM
-        )
-        farthest = FARTHEST * (highest or float(np.abs(forces).max()))
-        self.y.hold(
-            key[:2],
-            [-highest, highest],
-            np.clip(forces, -farthest, farthest),
-            margin=ROOM,
-        )
+        self.x.hold(key, [0.0, known_slip], iterate=[slips], margin=ROOM)
+        self.y.hold(key[:2], [-highest, highest], iterate=[forces], margin=ROOM)
         self.across.hold(key[:2], extra["x"])
 
     def _show_law(self, extra: Any, way: _Way, column: int) -> None:

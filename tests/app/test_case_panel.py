@@ -30,6 +30,7 @@ from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.views.catalogue import CARDS, LARGE_CARDS
 from app.views.scene import Scene
+from app.views.view import View
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from app.worker.sampling import Sampler
@@ -150,6 +151,12 @@ def test_a_case_opens_with_the_plot_of_its_flag_in_front(case: Case) -> None:
         assert offered[on_top(offered, state)].name == case.flag.plot
 
 
+def named_in(view: View) -> list[str]:
+    """Entries of the legend of a view that are seen."""
+    (legend,) = view.figure.legend
+    return [item.label.value for item in legend.items if item.visible]
+
+
 @pytest.mark.parametrize(
     "name", ["pile", "lap-joint", "pull-out", "fault", "church-arch"]
 )
@@ -164,14 +171,15 @@ def test_the_known_number_is_a_flag_on_its_plot_until_the_case_is_changed(
     _ = view.figure
     selection = Selection(case.instant)
     view.update(frame, selection, None)
-    flag = view.sources["flag text"].data
-    assert flag["text"] == [case.flag.text]
-    assert view.y.si(flag["y"][0]) == pytest.approx(case.flag.y, rel=1e-5)
+    heights = [*view.sources["flag"].data["y"], *view.sources["level"].data["y"]]
+    assert [view.y.si(y) for y in heights] == pytest.approx([case.flag.y], rel=1e-5)
+    assert case.flag.text in named_in(view)
     changed = frame.run.settings.replace(friction=0.01)
     run = replace(frame.run, settings=changed)
     view.update(replace(frame, run=run), selection, None)
-    assert flag != view.sources["flag text"].data
-    assert not view.sources["flag text"].data["text"]
+    assert not view.sources["flag"].data["y"]
+    assert not view.sources["level"].data["y"]
+    assert case.flag.text not in named_in(view)
 
 
 @each
@@ -201,8 +209,7 @@ def test_a_pile_stands_upright_in_its_soil() -> None:
     assert np.ptp(y) > 2.5 * np.ptp(x)
     # Positions along the bar grow downwards.
     assert y[frame.run.geometry.nodes[:, 0].argmax()] == pytest.approx(y.min())
-    words = view.sources["words"].data
-    assert "soil" in words["text"]
+    assert "soil" in named_in(view)
     for data in (view.sources["ground"].data, view.sources["strokes"].data):
         across = np.concatenate([np.ravel(line) for line in data["xs"]])
         assert np.nanmin(across) > 0.0

@@ -17,7 +17,7 @@ from panel.util import edit_readonly
 from app.controls import FILES, Controls, _groups_of
 from app.files.points import CurveDialog
 from app.messages import Start
-from app.refusals import advice_in_titles
+from app.refusals import in_titles
 from app.setting_control import POINTS, SettingControl
 from app.state import PageState, default_settings
 from solver.files.amounts import Unit, unit_of
@@ -210,7 +210,7 @@ def test_advice_on_a_run_has_the_names_of_the_page_and_keeps_its_other_words() -
         "friction, or try a k_scale ten times smaller, where friction falls, or set "
         "finish=at-once (residual 3e-14)."
     )
-    assert advice_in_titles(default_settings("bar"), advice) == (
+    assert in_titles(default_settings("bar"), advice) == (
         "Friction falls with slip. Raise Most iterations, or lower Last friction over "
         "first or Friction coefficient μ, or try a Factor on k ten times smaller, "
         "where friction falls, or set Finish = at-once (residual 3·10⁻¹⁴)."
@@ -219,7 +219,7 @@ def test_advice_on_a_run_has_the_names_of_the_page_and_keeps_its_other_words() -
 
 def test_amounts_with_a_power_of_ten_are_in_a_unit_of_their_size() -> None:
     remark = "some body up to 9.4e-06 m away, with 2e+05 N/m and 3e-9 of the force"
-    assert advice_in_titles(default_settings("bar"), remark) == (
+    assert in_titles(default_settings("bar"), remark) == (
         "some body up to 9.4 µm away, with 200000 N/m and 3·10⁻⁹ of the force"
     )
 

@@ -17,7 +17,7 @@ import frames
 import numpy as np
 import pandas as pd
 import pytest
-from bokeh.models import Text
+from bokeh.models import Text, Title
 from pictures import boxes_of_words
 from small_scenes import SMALL as SMALLEST
 
@@ -36,6 +36,7 @@ from app.messages import TABLE, Needs, Start
 from app.state import PageState, default_settings
 from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
+from app.views.pieces import PiecesView
 from app.views.scene import Scene
 from app.views.status_map import StatusMap
 from app.views.timeline import Timeline
@@ -247,6 +248,16 @@ def test_words_of_a_saved_picture_are_whole_on_a_phone_without_the_font(
     for text, box in boxes_of_words(view, letter=letter):
         assert box[0, 0] >= 0.0, text
         assert box[1, 0] <= NARROWEST, text
+
+
+def test_words_above_saved_pieces_are_whole_on_a_phone() -> None:
+    state, _ = page("bar")
+    assert state.frame is not None
+    (view,) = _copies([PiecesView(state)], state.frame.run)
+    view.update(state.frame, Selection(0.4), None)
+    (words,) = [part for part in view.figure.above if isinstance(part, Title)]
+    assert words.text.startswith("Linear stage")
+    assert 6.0 * max(map(len, words.text.splitlines())) <= NARROWEST
 
 
 def test_the_offline_page_tells_status_and_all_settings_as_the_page_does() -> None:

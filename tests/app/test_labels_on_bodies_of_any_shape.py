@@ -1,33 +1,32 @@
-"""Labels on bodies of any shape: loads, weights, joints."""
+"""Labels on bodies of any shape: loads, weights; keys of contacts."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 from frames import arch, ran
-from pictures import boxes_of_words, meet, shown
+from pictures import boxes_of_words, frame_of, meet, shown, small
 
 from app.frame import Frame, Selection
 from app.lessons.catalogue import CASES
-from app.state import PageState, default_settings
-from app.views.scene import Scene
+from app.state import default_settings
 from app.views.timeline import paths_of
 
 
-def test_the_selected_joint_is_named_beside_it(spread: Frame) -> None:
-    state = PageState(spread.run.settings, frame=spread)
-    view = Scene(state)
-    _ = view.figure
-    view.update(spread, Selection(0.5, interface="crown"), None)
-    picture = view.picture
-    assert picture is not None
-    low, high = dict(boxes_of_words(view))["crown"]
-    halo = picture.page(picture.halo)
-    assert low[0] < halo[:, 0].mean() < high[0]
-    assert not meet((low, high), halo.min(axis=0), halo.max(axis=0))
-    (weight,) = [each for each in picture.arrows if each.act.where == "body"]
-    shaft = picture.page(np.concatenate(weight.lines))
-    assert not meet((low, high), shaft.min(axis=0), shaft.max(axis=0))
+@pytest.mark.parametrize("name", ["arch", "layers", "mesh", "wall"])
+def test_the_selected_contact_is_named_among_the_keys(name: str) -> None:
+    frame = frame_of(small(name))
+    view = shown(frame)
+    for interface in frame.run.surfaces:
+        view.update(frame, Selection(0.5, interface), None)
+        assert len(view.picture.halo)  # type: ignore[union-attr]
+        (legend,) = view.figure.legend
+        assert interface in [item.label.value for item in legend.items if item.visible]
+
+
+def test_the_only_contact_has_no_key() -> None:
+    view = shown(frame_of(small("bar")))
+    assert not view._items["selected"].visible
 
 
 CROWDED = {
@@ -98,25 +97,6 @@ def test_the_weight_of_a_wall_is_read_beside_it_and_not_at_its_pressure() -> Non
     assert corners[:, 1].min() < box[:, 1].mean() < corners[:, 1].max()
 
 
-@pytest.mark.parametrize("interface", ["left flank", "right flank"])
-def test_the_name_of_a_joint_in_a_notch_lies_beside_its_end_and_on_no_body(
-    interface: str,
-) -> None:
-    settings = default_settings("mesh").replace(mesh="dovetail", instants=9)
-    frame = ran(settings, ends=False)
-    view = shown(frame, 0.5)
-    view.lay_out(430.0, 360.0)
-    view.update(frame, Selection(0.5, interface), None)
-    picture = view.picture
-    assert picture is not None
-    (box,) = (box for text, box in boxes_of_words(view) if text == interface)
-    corners = picture.page(picture.nodes[frame.run.geometry.cells])
-    assert not meet(box, corners.min(axis=1), corners.max(axis=1))
-    top = picture.page(picture.halo)[:, 1].argmax()
-    end = picture.page(picture.halo)[top]
-    assert np.hypot(*(np.clip(end, *box) - end)) < 30.0
-
-
 def test_the_words_of_a_weight_have_a_line_to_it_on_a_phone() -> None:
     frame = ran(default_settings("wall").replace(instants=9), ends=False)
     view = shown(frame, 0.5)
@@ -124,33 +104,6 @@ def test_the_words_of_a_weight_have_a_line_to_it_on_a_phone() -> None:
     for phase in (0.3, 0.5, 0.75, 1.0):
         view.update(frame, Selection(phase), None)
         assert len(view.sources["leaders"].data["xs"]) == 1
-
-
-def test_the_name_of_a_joint_lies_on_no_body_where_one_end_is_free() -> None:
-    frame = ran(default_settings("mesh"), ends=False)
-    view = shown(frame, 0.5)
-    view.lay_out(950.0, 230.0)
-    for name in frame.run.surfaces:
-        view.update(frame, Selection(0.5, interface=name), None)
-        picture = view.picture
-        assert picture is not None
-        corners = picture.page(picture.nodes[frame.run.geometry.cells])
-        box = dict(boxes_of_words(view))[name]
-        assert not meet(box, corners.min(axis=1), corners.max(axis=1)), name
-
-
-def test_a_joint_on_the_ground_of_a_case_has_its_name_below_the_ground() -> None:
-    """The name of a joint between logs and ground had no place at all."""
-    case = CASES["heap-of-logs"]
-    frame = ran(case.settings, ends=False)
-    view = Scene(PageState(case.settings, frame=frame, case=case.name))
-    _ = view.figure
-    view.lay_out(520.0, 420.0)
-    view.update(frame, Selection(case.instant), None)
-    assert view.picture is not None
-    ground = view.picture.page(view.picture.ground)
-    _, high = dict(boxes_of_words(view))["ground 1"]
-    assert high[1] < ground[..., 1].min()
 
 
 @pytest.mark.parametrize("size", [(900.0, 300.0), (374.0, 300.0), (360.0, 256.0)])

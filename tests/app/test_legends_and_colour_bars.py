@@ -55,19 +55,6 @@ def test_marks_of_a_legend_are_as_large_as_its_words() -> None:
     assert legend.glyph_height == 12
 
 
-def test_names_of_many_paths_stand_above_the_paths_on_a_phone() -> None:
-    settings = small("wall")
-    view = Timeline(PageState(settings))
-    plot = view.figure
-    view.lay_out(900.0, 44.0)
-    view.update(frame_of(settings), Selection(), None)
-    wide = plot.y_range.end
-    view._resize("inner_width", 900.0, 320.0)
-    assert plot.y_range.end > wide
-    view._resize("inner_width", 320.0, 900.0)
-    assert plot.y_range.end == wide
-
-
 def test_a_colour_bar_is_laid_out_anew_for_other_values_and_only_then() -> None:
     # Bokeh lays a bar out for another mapper, not for other limits of the same one.
     colors = LinearColorMapper(palette=["black", "white"], low=0.0, high=1.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -275,8 +276,7 @@ def test_a_large_wall_shows_the_forces_of_some_joints_and_says_so() -> None:
 
 def words(view: PiecesView) -> str:
     """Text of a view, in one line."""
-    (text,) = view.sources["words"].data["text"]
-    return text.replace("\n", " ")
+    return view._told.text.replace("\n", " ")
 
 
 def test_the_view_says_what_fits_keeps_its_scales_and_selects_by_a_tap() -> None:
@@ -300,47 +300,37 @@ def test_the_view_says_what_fits_keeps_its_scales_and_selects_by_a_tap() -> None
     assert len(view.sources["selected"].data["x"])
 
 
-def on_a_projector(
-    width: float, height: float, scene: str = "bar", size: str = "23px"
-) -> PiecesView:
-    """The pieces of a scene in a figure of a size, px, with large type."""
-    frame = frame_of(settings_of(scene), 2)
+def sized(width: float, height: float, size: str) -> PiecesView:
+    """The pieces of a bar in a figure of a size, px, with type of a size."""
+    frame = frame_of(settings_of("bar"), 2)
     view = PiecesView(PageState(frame.run.settings))
     assert view.figure is not None
     view.magnify(size)
-    view._size = {"inner_width": width, "inner_height": height}
+    view.lay_out(width, height)
     view.update(frame, Selection(), None)
     return view
 
 
-@pytest.mark.parametrize("height", [260.0, 210.0])
-def test_words_on_a_projector_leave_the_pieces_free(height: float) -> None:
-    view = on_a_projector(400.0, height)
-    (text,) = view.sources["words"].data["text"]
-    lines = text.splitlines()
+@pytest.mark.parametrize("size", ["12px", "23px"])
+def test_words_are_in_lines_no_longer_than_the_figure(size: str) -> None:
+    view = sized(400.0, 260.0, size)
+    lines = view._told.text.splitlines()
     assert lines[0].startswith("Linear stage")
-    (top,) = view.sources["words"].data["y"]
-    highest = np.nanmax(view.sources["pieces"].data["y"])
-    assert highest < top - 23.0 * len(lines)
+    letter = 0.5 * float(size.removesuffix("px"))
+    assert letter * max(map(len, lines)) < 400.0
 
 
-@pytest.mark.parametrize("scene", ["block", "fault"])
-def test_words_stand_beside_high_pieces_which_are_larger_so(scene: str) -> None:
-    view = on_a_projector(690.0, 220.0, scene, "19px")
-    (text,) = view.sources["words"].data["text"]
-    lines = text.splitlines()
-    assert len(lines) > 4
-    pieces = view.sources["pieces"].data
-    assert 0.5 * 19.0 * max(map(len, lines)) < np.nanmin(pieces["x"])
-    assert np.nanmax(pieces["y"]) - np.nanmin(pieces["y"]) > 0.4 * 220.0
-    (top,) = view.sources["words"].data["y"]
-    assert top - 19.0 * len(lines) > 0.0
+def test_without_pieces_there_are_no_words() -> None:
+    view = sized(400.0, 260.0, "12px")
+    frame, selection, ghost = view._shown  # type: ignore[misc]
+    view.update(replace(frame, extras={}), selection, ghost)
+    assert view._told.text == ""
 
 
-def test_pieces_are_drawn_in_a_figure_that_is_too_small_for_words() -> None:
-    view = on_a_projector(300.0, 120.0)
+def test_pieces_are_drawn_in_a_figure_that_is_small() -> None:
+    view = sized(300.0, 60.0, "23px")
     heights = np.asarray(view.sources["pieces"].data["y"])
-    assert 0.0 < np.nanmin(heights) < np.nanmax(heights) < 120.0
+    assert 0.0 < np.nanmin(heights) < np.nanmax(heights) < 60.0
 
 
 @pytest.mark.parametrize(("scene", "count"), [("bar", 10), ("strand", 0)])

@@ -377,13 +377,12 @@ def test_marks_of_a_first_visit_take_the_place_of_the_keys_in_a_small_picture() 
         view.update(frame, Selection(0.25), None)
         assert keys.visible == is_seen
     marks = view.sources["hints"].data
-    pulled = marks["text"].index("↖ pulled to\nand fro")
+    pulled = marks["text"].index("↖ pulled to and fro")
     layout = view.picture.layout  # type: ignore[union-attr]
-    line, _ = marks["text"][pulled].splitlines()
-    assert marks["x"][pulled] + layout.letter * len(line) + 10.0 <= width
-    # Marks lie beside each other.
-    first, _ = marks["text"][0].splitlines()
-    assert marks["x"][0] + 0.9 * layout.letter * len(first) <= marks["x"][pulled]
+    length = layout.letter * len(marks["text"][pulled])
+    assert marks["x"][pulled] + length + 10.0 <= width
+    # Marks lie below each other; the first one has two lines.
+    assert marks["y"][0] - marks["y"][pulled] >= 1.5 * layout.row + 10.0
     view.state.is_new = False
     view.update(frame, Selection(0.25), None)
     assert keys.visible
