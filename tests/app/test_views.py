@@ -20,10 +20,11 @@ from frames import frame_of
 from views import MORE, SMALL, VIEWS, frames_of, other_run, settings_of, shown, view_of
 
 from app.frame import Frame, Selection
+from app.lessons.catalogue import CASES
 from app.live import Card
 from app.messages import Needs
 from app.state import PageState, default_settings
-from app.views.bases import Spectra
+from app.views.bases import ClipErrors, Spectra
 from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
 from app.views.errors import Convergence
@@ -73,7 +74,7 @@ def test_a_view_of_an_extra_has_none_of_the_scene_before() -> None:
     bar = frames_of("bar")[2]
     view = view_of(Spectra, bar)
     shown(view, replace(bar, extras={}))
-    assert any(len(source.data["xs"]) for source in view.sources.values())
+    assert len(view.sources["values"].data["xs"])
     shown(view, replace(frames_of("block")[2], extras={}))
     for source in view.sources.values():
         assert not any(map(len, source.data.values()))
@@ -312,6 +313,32 @@ def test_each_substructure_has_its_curve_of_singular_values(
     frame = frame_of(settings, Needs(extras=frozenset({"spectra"})), ends=False)
     data = view_of(Spectra, frame).sources["values"].data
     assert len(data["xs"]) == len(data["part"]) == count
+
+
+def pile(kind: type[View]) -> View:
+    """A view of a pile, all of which slips at once: one mode and one vector do."""
+    settings = CASES["pile"].settings.replace(finish="at-once")
+    frame = frame_of(settings, Needs(extras=kind.needs), ends=True)
+    return view_of(kind, frame)
+
+
+def test_a_single_singular_value_is_a_dot() -> None:
+    view = pile(Spectra)
+    curves = view.sources["values"].data
+    dots = view.sources["alone"].data
+    assert {*map(len, curves["ys"])} == {1}
+    assert [*dots["y"]] == [values[0] for values in curves["ys"]]
+    assert [*dots["part"]] == [*curves["part"]]
+    assert all(view.figure.x_range.start < x for x in dots["x"])
+
+
+def test_a_form_of_storage_with_one_point_is_a_dot() -> None:
+    view = pile(ClipErrors)
+    curve = view.sources["SVD"].data
+    dot = view.sources["first SVD"].data
+    assert [*dot["x"]] == [*curve["x"]]
+    assert len(dot["x"]) == 1
+    assert view.figure.y_range.start < dot["y"][0]
 
 
 def test_singular_values_wait_for_the_worker_to_send_them() -> None:
