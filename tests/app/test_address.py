@@ -136,6 +136,15 @@ def test_what_says_nothing_to_the_page_is_passed_over(query: str) -> None:
     assert (place["settings"].peak, refusal) == (1100.0, "")
 
 
+@pytest.mark.parametrize(
+    "part",
+    ["", "k_scale=", "scene=", "case=", "tab=", "scene=mesh&sides=", "file=", "load=["],
+)
+def test_a_refusal_of_a_long_text_is_short(part: str) -> None:
+    _, refusal = read(f"?{part}{15_000 * 'x'}")
+    assert 0 < len(refusal) < 400
+
+
 def test_of_thousands_of_unknown_names_few_are_looked_for_and_told(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
