@@ -12,7 +12,18 @@ import panel as pn
 from bokeh.document import Document
 from bokeh.embed import file_html
 from bokeh.model import Model
-from bokeh.models import CustomJS, Div, PointDrawTool, SaveTool, Slider, Text
+from bokeh.models import (
+    Axis,
+    ColorBar,
+    CustomJS,
+    Div,
+    PointDrawTool,
+    SaveTool,
+    Slider,
+    Text,
+    Title,
+)
+from bokeh.plotting import figure
 from bokeh.resources import INLINE
 
 from app.charts import library
@@ -174,12 +185,22 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
                 glyph.text_font_size = TEXT
         elif not isinstance(view, PiecesView):
             view.lay_out(*ROOM)
+        _set_labels(plot)
         plot.tools = [
             tool for tool in plot.tools if not isinstance(tool, PointDrawTool)
         ]
         for tool in plot.select({"type": SaveTool}):
             tool.filename = view.name
     return copies
+
+
+def _set_labels(plot: figure) -> None:
+    """Set the type size of axes, titles and colour bars: each theme has another."""
+    for model in plot.references():
+        if isinstance(model, Axis | ColorBar | Title):
+            names = model.properties()
+            sizes = [name for name in names if name.endswith("text_font_size")]
+            model.update(**dict.fromkeys(sizes, TEXT))
 
 
 def _settings_table(settings: Settings) -> list[dict[str, str]]:
