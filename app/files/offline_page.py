@@ -18,7 +18,6 @@ from bokeh.models import (
     CustomJS,
     Div,
     PointDrawTool,
-    SaveTool,
     Slider,
     Text,
     Title,
@@ -189,8 +188,6 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
         plot.tools = [
             tool for tool in plot.tools if not isinstance(tool, PointDrawTool)
         ]
-        for tool in plot.select({"type": SaveTool}):
-            tool.filename = view.name
     return copies
 
 

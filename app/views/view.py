@@ -23,6 +23,7 @@ from bokeh.models import (
     LegendItem,
     NoOverlap,
     Range1d,
+    SaveTool,
     Scatter,
     Title,
     UnionRenderers,
@@ -223,6 +224,10 @@ class View:
             active_scroll="wheel_zoom",
             **(ranges | more),
         )
+        for tool in plot.tools:
+            if isinstance(tool, SaveTool):
+                # Else the browser asks for a name.
+                tool.filename = self.name
         plot.add_tools(CrosshairTool(line_color=CUT, line_alpha=0.5))
         plot.js_on_change("hold_render", CustomJS(code=INSPECT))
         plot.toolbar.autohide = True

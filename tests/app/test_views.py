@@ -14,7 +14,7 @@ import pytest
 from bokeh.core.serialization import Serializer
 from bokeh.document import Document
 from bokeh.events import Tap
-from bokeh.models import DataRange1d, LogScale
+from bokeh.models import DataRange1d, LogScale, SaveTool
 from bokeh.settings import settings
 from frames import frame_of
 from views import MORE, SMALL, VIEWS, frames_of, other_run, settings_of, shown, view_of
@@ -313,6 +313,16 @@ def test_each_substructure_has_its_curve_of_singular_values(
     frame = frame_of(settings, Needs(extras=frozenset({"spectra"})), ends=False)
     data = view_of(Spectra, frame).sources["values"].data
     assert len(data["xs"]) == len(data["part"]) == count
+
+
+@pytest.mark.parametrize("kind", VIEWS)
+def test_a_plot_is_saved_under_its_name(kind: type[View]) -> None:
+    # Without one the browser asks for it, and proposes that of the library.
+    plot = untouched(kind).figure
+    tools = [tool for tool in plot.tools if isinstance(tool, SaveTool)]
+    # Pictures of bodies have no tools.
+    assert len(tools) == int(bool(plot.toolbar.tools))
+    assert {tool.filename for tool in tools} <= {kind.name}
 
 
 def pile(kind: type[View]) -> View:
