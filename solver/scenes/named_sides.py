@@ -91,7 +91,8 @@ def conditions_of(lines: Sequence[str], given: str) -> Mapping[str, tuple[str, .
             raise RefusedError("sides", phrase.strip(), ALLOWED, remedy)
         if name.lower() not in names:
             sides = ", ".join(split_phrase(line)[0] for line in lines) or "none"
-            remedy = f"there is no side {name[:LONGEST]!r}: those of the mesh are {sides}"
+            shown = repr(name[:LONGEST])
+            remedy = f"there is no side {shown}: those of the mesh are {sides}"
             raise RefusedError("sides", phrase.strip(), ALLOWED, remedy)
         known[names[name.lower()]] = conditions
     return known
