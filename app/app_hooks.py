@@ -8,8 +8,17 @@ from typing import Any
 ROOT = str(Path(__file__).resolve().parents[1])
 sys.path.insert(0, ROOT)
 
-from app.server import configure, lighten, share_looks  # noqa: E402  # the root is on the path only from here on
+# The root is on the path only from here on.
+from app.experiments.jobs import executor_name  # noqa: E402
+from app.server import configure, lighten, most_pages, share_looks  # noqa: E402
+from solver.refusal import RefusedError  # noqa: E402
 
+try:
+    # Else each page, or each sweep, would be refused by itself.
+    most_pages()
+    executor_name()
+except RefusedError as refusal:
+    sys.exit(str(refusal))
 configure()
 lighten()
 

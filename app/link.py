@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from collections import Counter
 from collections.abc import Mapping
 from difflib import get_close_matches
 from typing import Any
@@ -34,6 +36,12 @@ from solver.settings.values import checked_value
 
 ALIKE = 0.6
 """Likeness of a name to the one that it is taken for, at least."""
+MOST = 5
+"""Largest number of refusals that are told in full, and of unknown names for which ones
+that are alike are searched."""
+OF_OTHERS = re.compile(r"theme|utm_\w+|fbclid|gclid")
+"""Names that others read: Panel begins a page in the theme, and mail and networks count
+those who follow a link."""
 SHARED = "lesson", "case", "tab", "question", "pace", "plots", "view", "room"
 """Parts of a page's state in its address, beside settings."""
 BESIDE = (
@@ -233,10 +241,8 @@ def read(query: str, present: Settings | None = None) -> tuple[Shown, str]:
     The page's `present` settings have the values that are too long for an address. The
     sentence is "" where nothing is refused.
     """
-    pairs = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
-    # Panel itself begins a page in the theme.
-    pairs.pop("theme", "")
     refused: list[str] = []
+    pairs = _pairs(query, refused)
     # Each step takes its own parts out of the pairs: the settings are what is left.
     shown: Shown = {"room": pairs.pop("class", "")}
     question = pairs.pop("question", "")
@@ -249,17 +255,60 @@ def read(query: str, present: Settings | None = None) -> tuple[Shown, str]:
     if "interface" in pairs:
         shown["interface"] = pairs.pop("interface")
     values = _of_present(base, pairs, present, refused)
+    dropped = _without_unknown(pairs, base)
     values |= _typed(base, pairs, refused)
     shown["settings"] = _together(base, values, refused)
+    refused += [f"{name[:40]}: there is no such setting" for name in dropped]
     shown["question"] = question
     # Beside another tab the question may be that of a scene before.
     if shown.get("tab") == WHAT_IF:
         shown["question"] = _question(question, shown["settings"], refused)
     if not refused:
         return shown, ""
-    reasons = "; ".join(text.rstrip(".") for text in refused)
+    told = refused[:MOST]
+    if len(refused) > MOST:
+        told.append(f"and {len(refused) - MOST} more")
+    reasons = "; ".join(text.rstrip(".") for text in told)
     end = "" if reasons.endswith("?") else "."
     return shown, f"From the address: {reasons}{end}"
+
+
+def _pairs(query: str, refused: list[str]) -> dict[str, str]:
+    """Names and their last values in a query; refuse values without a name."""
+    found = []
+    for name, text in parse_qsl(query.lstrip("?"), keep_blank_values=True):
+        value = _readable(text)
+        if name.strip():
+            found.append((_readable(name.strip()), value))
+        elif value.strip():
+            refused.append(
+                f"{value[:40]} has no name: write a name before it, as friction=0.3"
+            )
+    pairs = dict(found)
+    counts = Counter(name for name, value in set(found))
+    for name, count in counts.items():
+        if OF_OTHERS.fullmatch(name):
+            pairs.pop(name)
+        elif count > 1:
+            refused.append(f"{name[:40]} has {count} values: the last one is taken")
+    return pairs
+
+
+def _readable(text: str) -> str:
+    """A text with characters that cannot be seen as an address has them, as %0A."""
+    return "".join([each if each.isprintable() else quote(each) for each in text])
+
+
+def _without_unknown(pairs: dict[str, str], base: Settings) -> list[str]:
+    """Take out all but a few names that no setting has; return their names.
+
+    The search for a name that is alike takes a hundredth of a second, in which the
+    server does nothing else.
+    """
+    unknown = [name for name in pairs if name not in base.definitions()]
+    for name in unknown[MOST:]:
+        del pairs[name]
+    return unknown[MOST:]
 
 
 def _question(text: str, settings: Settings, refused: list[str]) -> str:

@@ -24,6 +24,10 @@ from tornado.routing import Matcher, Rule
 from tornado.web import Application, ErrorHandler, GZipContentEncoding, OutputTransform
 from tornado.websocket import WebSocketClosedError
 
+from solver.refusal import RefusedError
+
+VARIABLE = "SLIPFRONT_PAGES"
+"""Variable of the environment with the largest number of open pages."""
 OF_A_PAGE = 150_000_000
 """Memory that a page may need, bytes, most of it in its worker and its history."""
 SHARE = 0.8
@@ -106,9 +110,18 @@ PAGES = Pages()
 
 
 def most_pages() -> int:
-    """Largest number of open pages, as set, or as memory allows."""
-    if text := os.environ.get("SLIPFRONT_PAGES"):
-        return max(int(text), 1)
+    """Largest number of open pages, as set, or as memory allows.
+
+    Raises
+    ------
+    RefusedError
+        If what is set is no such number.
+    """
+    if text := os.environ.get(VARIABLE):
+        if text.strip().isdecimal() and int(text) > 0:
+            return int(text)
+        remedy = "or leave it out, for as many pages as memory holds"
+        raise RefusedError(VARIABLE, text, "whole numbers from 1 on", remedy)
     memory = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     # A container may have less memory than its machine.
     limit = Path("/sys/fs/cgroup/memory.max")

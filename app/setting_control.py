@@ -49,6 +49,7 @@ class SettingControl:
         self._unit = unit_of(self._definition)
         self._is_updating = False
         self._is_dragged = False
+        self._may_forget = False
         self._echoes = Echoes(state)
         self._positions = Echoes(state)
         self._dialog: CurveDialog | None = None
@@ -58,13 +59,19 @@ class SettingControl:
         self.field.param.watch(lambda event: self._on_field(event.new), "value")
         if isinstance(self.field, pmui.TextInput):
             self.field.param.watch(self._forgive, ["value_input", "enter_pressed"])
+        if isinstance(self.field, pmui.Select):
+            self.field.param.watch(self._follow_list, "dropdown_open")
         self.update()
         # No browser has shown the initial values of the widgets.
         self._echoes = Echoes(state)
         self._positions = Echoes(state)
 
-    def update(self) -> None:
-        """Show the value of the setting, and whether it applies."""
+    def update(self, refusal: str = "") -> None:
+        """Show the value of the setting, whether it applies, and a refusal, if any.
+
+        In one change: what is given twice in a moment the browser may show in either
+        order.
+        """
         settings = self._state.settings
         # Widgets report these changes, too, as if a person had made them.
         self._is_updating = True
@@ -73,7 +80,7 @@ class SettingControl:
             for view in self.views:
                 view.visible = applies
             self._show(getattr(settings, self.name))
-            self._explain("")
+            self._explain(refusal)
         finally:
             self._is_updating = False
 
@@ -233,9 +240,23 @@ class SettingControl:
         # What was refused may be told once more, after it was replaced.
         is_shown = event.name == "enter_pressed" or event.new == field.value
         if is_shown:
-            if self._state.refusal == field.helper_text:
-                self._state.refusal = ""
-            self._explain("")
+            self._forget()
+
+    def _follow_list(self, event: Any) -> None:
+        """Forget a refusal once the list of options closes on the shown one.
+
+        To the server that is no new value. A new one comes before the list closes.
+        """
+        if event.new:
+            self._may_forget = self.field.error_state
+        elif self._may_forget:
+            self._forget()
+
+    def _forget(self) -> None:
+        """Forget the refusal that stands below the field."""
+        if self._state.refusal == self.field.helper_text:
+            self._state.refusal = ""
+        self._explain("")
 
     def _on_field(self, value: Any) -> None:
         if self._is_updating or value is None:
@@ -273,8 +294,8 @@ class SettingControl:
     def _refuse(self, refusal: str) -> None:
         """Show the present value again, and the reason of the refusal."""
         self._state.refusal = refusal
-        self.update()
-        self._explain(refusal)
+        self._may_forget = False
+        self.update(refusal)
 
     def _move(self, *events: Any) -> None:
         """Run the value of the slider while it is dragged, and when it is released.
@@ -293,8 +314,7 @@ class SettingControl:
             self._state.drag(self.name, value)
             return
         self._state.release(self.name, value)
-        self.update()
-        self._explain(self._state.refusal)
+        self.update(self._state.refusal)
 
     # What is set here in a figure is to come after the figure, whoever holds the
     # document's lock.

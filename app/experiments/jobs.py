@@ -19,7 +19,7 @@ import panel as pn
 
 from app.worker.commands import LOG, command
 from solver.refusal import RefusedError
-from solver.study.sweep.executors import opened, processors
+from solver.study.sweep.executors import check_name, opened, processors
 from solver.study.sweep.plan import Plan, Row
 from solver.study.sweep.run import longest_wait, sweep
 
@@ -133,6 +133,23 @@ class Job:
         self._directory.cleanup()
 
 
+def executor_name() -> str:
+    """Name of the executor of sweeps, as set, or local processes.
+
+    Raises
+    ------
+    RefusedError
+        If what is set names none.
+    """
+    named = os.environ.get(VARIABLE) or PROCESSES
+    try:
+        check_name(named)
+    except RefusedError as refusal:
+        about = refusal.value, refusal.allowed, refusal.remedy
+        raise RefusedError(VARIABLE, *about) from None
+    return named
+
+
 def share_of(named: str, users: int) -> str:
     """Executor of one of several sweeps: a share of local processes, or a cluster.
 
@@ -178,10 +195,9 @@ class Sweep:
 
     def _go(self) -> None:
         self._under_way.add(self)
-        named = os.environ.get(VARIABLE) or PROCESSES
-        # Sweeps that are under way share the processors from here on.
-        share = share_of(named, len(self._under_way))
         try:
+            # Sweeps that are under way share the processors from here on.
+            share = share_of(executor_name(), len(self._under_way))
             with opened(share, longest_wait(LIMIT)) as where:
                 is_cancelled = self._is_cancelled.is_set
                 rows = sweep(self.plan, where, limit=LIMIT, cancelled=is_cancelled)

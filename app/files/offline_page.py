@@ -12,7 +12,17 @@ import panel as pn
 from bokeh.document import Document
 from bokeh.embed import file_html
 from bokeh.model import Model
-from bokeh.models import CustomJS, Div, PointDrawTool, SaveTool, Slider, Text
+from bokeh.models import (
+    Axis,
+    ColorBar,
+    CustomJS,
+    Div,
+    PointDrawTool,
+    Slider,
+    Text,
+    Title,
+)
+from bokeh.plotting import figure
 from bokeh.resources import INLINE
 
 from app.charts import library
@@ -178,12 +188,20 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
             # Its words are not scaled either, and their lines are those of a phone.
             view.lay_out(NARROWEST, PIECES)
             plot.max_width = WIDE_PIECES
+        _set_labels(plot)
         plot.tools = [
             tool for tool in plot.tools if not isinstance(tool, PointDrawTool)
         ]
-        for tool in plot.select({"type": SaveTool}):
-            tool.filename = view.name
     return copies
+
+
+def _set_labels(plot: figure) -> None:
+    """Set the type size of axes, titles and colour bars: each theme has another."""
+    for model in plot.references():
+        if isinstance(model, Axis | ColorBar | Title):
+            names = model.properties()
+            sizes = [name for name in names if name.endswith("text_font_size")]
+            model.update(**dict.fromkeys(sizes, TEXT))
 
 
 def _settings_table(settings: Settings) -> list[dict[str, str]]:

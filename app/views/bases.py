@@ -27,8 +27,12 @@ LARGEST = 1_000_000
 """Number of values of a field up to which its clips are found: the worker takes no
 order meanwhile (measured: 0.9 s for 1001 x 999)."""
 FLOOR = 1e-6
+SEEN = 1.6 * FLOOR
 EXACT = 1e-9
-"""Smallest error that is shown, and error up to which clips differ by rounding."""
+"""Smallest error that is shown, that of a mark, and error up to which clips differ by
+rounding."""
+DOT = 7
+"""Size of a value without a curve, px."""
 STORED = {"SVD": LATIN, "PGD": DISPLACEMENT, "clips": ERROR}
 """Colours of the curves of `ClipErrors`, by the form of storage."""
 
@@ -52,7 +56,9 @@ class Spectra(ExtraView):
         lines = self.add(
             "values", "MultiLine", "xs ys", also="part", color=color, width=1.8
         )
-        hover(plot, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
+        # A curve of one value has no length.
+        dots = self.add("alone", "Scatter", also="part", color=color, size=DOT)
+        hover(plot, [lines, dots], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
         ticker = BasicTicker(desired_num_ticks=4, min_interval=1, num_minor_ticks=0)
         self._bar = color_bar(plot, self._colors, ticker=ticker)
 
@@ -62,12 +68,18 @@ class Spectra(ExtraView):
         modes = np.arange(1.0, MOST_VALUES + 1.0, dtype=np.float32)
         lengths = [len(values) for values in ys]
         xs = [modes[:length] for length in lengths]
-        self.fill("values", xs=xs, ys=ys, part=thinned(count, MOST_SPECTRA) + 1.0)
+        parts = thinned(count, MOST_SPECTRA) + 1.0
+        self.fill("values", xs=xs, ys=ys, part=parts)
+        is_alone = np.equal(lengths, 1)
+        sizes = [float(values[0]) for values in ys if len(values) == 1]
+        self.fill("alone", x=np.ones(len(sizes)), y=sizes, part=parts[is_alone])
         title = "mode"
         if count > 1:
             title = "mode; the colour is the substructure"
         self.x.rename(title, "")
-        self.x.hold(frame.run.number, [1, max([FEWEST, *lengths])])
+        # Values at the first mode are seen in full.
+        limits = [1, max([FEWEST, *lengths])]
+        self.x.hold(frame.run.number, limits, margin=0.02)
         self._bar.visible = count > 1
         self._colors.high = max(count, 2)
         explain(self._bar, self._colors)
@@ -155,6 +167,11 @@ class ClipErrors(ExtraView):
         lines.append(self.add("alone", "Scatter", size=11, **ring))
         # By this name the entry of the clips in the legend hides the ring, too.
         lines[-1].name = "clips"
+        for name in ("SVD", "PGD"):
+            # A form that is exact with its first vectors has a curve of one point.
+            dots = self.add(f"first {name}", "Scatter", size=DOT, color=STORED[name])
+            dots.name = name
+            lines.append(dots)
         self.add(
             "table", "VSpan", "x", color=REFERENCE, line_dash="dashed", line_width=1.5
         )
@@ -175,11 +192,14 @@ class ClipErrors(ExtraView):
                 counts.append(clips[name][0])
                 curve = _shown(clips[name])
             self.draw(name, *curve, titles.get(name, ""))
+            if name != "clips":
+                point = curve[:, : int(curve.shape[1] == 1)]
+                self.draw(f"first {name}", point[0], np.maximum(point[1], SEEN))
         numbers = np.concatenate(counts)
         self.x.hold(frame.run.number, np.clip(numbers[numbers > 0], 1.0, 10.0 * table))
         # Clips that are exact have no curve, but the ring.
         self.show("clips", True)
-        self.draw("alone", [max(size, 1.0)], [max(error, 1.6 * FLOOR)])
+        self.draw("alone", [max(size, 1.0)], [max(error, SEEN)])
         self.fill("table", x=[table])
 
 

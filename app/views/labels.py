@@ -134,11 +134,16 @@ def _leader(word: Word, obstacles: Obstacles) -> Array:
     It has no points where other words are given, or the arrow is near.
     """
     layout = obstacles.layout
-    tail = obstacles.weights.get(word.text)
-    if tail is not None:
-        # From the point of the words that is nearest.
-        begin = np.clip(tail, *box_of(layout, word))
-        if np.hypot(*(tail - begin)) >= FAR * layout.row:
+    arrow = obstacles.weights.get(word.text)
+    if arrow is not None:
+        # From the points of the words that are nearest to those of the arrow.
+        nearest = np.clip(arrow, *box_of(layout, word))
+        if np.hypot(*(arrow - nearest).T).min() >= FAR * layout.row:
+            begin = nearest[0]
+            tail = arrow[0]
+            if begin[1] != tail[1]:
+                # On a page that is saved words are narrower: they keep their anchor.
+                begin[0] = word.anchor[0]
             return np.stack([begin, tail])
     return np.zeros((0, 2))
 

@@ -80,13 +80,13 @@ class Obstacles:
 
     @cached_property
     def weights(self) -> dict[str, Array]:
-        """Tails of the arrows of weights, (2,) each, px, by the words of these."""
-        tails = {}
+        """Arrows of weights from their tails, (n, 2), px, by the words of these."""
+        lines = {}
         for arrows in self._picture.arrows:
             if arrows.act.side == "body" and len(arrows.lines):
                 text = text_of(arrows.act, self._picture.now)
-                tails[text] = self._picture.page(arrows.lines[0, 0])
-        return tails
+                lines[text] = self._picture.page(arrows.lines[0])
+        return lines
 
     @cached_property
     def _whole(self) -> tuple[Array, Array]:

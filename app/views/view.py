@@ -23,6 +23,7 @@ from bokeh.models import (
     LegendItem,
     NoOverlap,
     Range1d,
+    SaveTool,
     Scatter,
     Title,
     UnionRenderers,
@@ -209,6 +210,10 @@ class View:
             active_scroll="wheel_zoom",
             **(ranges | more),
         )
+        for tool in plot.tools:
+            if isinstance(tool, SaveTool):
+                # Else the browser asks for a name.
+                tool.filename = self.name
         plot.add_tools(CrosshairTool(line_color=CUT, line_alpha=0.5))
         plot.js_on_change("hold_render", CustomJS(code=INSPECT))
         plot.toolbar.autohide = True
@@ -380,15 +385,20 @@ class View:
 class ExtraView(View):
     """A view of one extra, which the worker sends when the view is visible."""
 
+    _of_scene = ""
+
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the extra of a frame, or nothing if the frame has none."""
+        """Show the extra of a frame, if the frame has it."""
         self._shown = frame, selection, ghost
         (name,) = self.needs
         extra = frame.extras.get(name)
-        if extra is None:
-            self.clear()
-        else:
+        scene = frame.run.settings.scene
+        if extra is not None:
+            self._of_scene = scene
             self._show(extra, frame, selection)
+        elif scene != self._of_scene:
+            # What is there is of the scene before.
+            self.clear()
 
     def _show(self, extra: Any, frame: Frame, selection: Selection) -> None:
         raise NotImplementedError

@@ -19,6 +19,7 @@ SEPARATORS = (
     "\t",
     ";",
     ",",
+    "|",
     " ",
     BLANKS,
 )

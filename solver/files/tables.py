@@ -10,7 +10,7 @@ first sheet, with the values that formulas had when it was saved.
 =========================== ============================================================
 Text                        Meaning
 =========================== ============================================================
-tab, `;`, `,`, blanks       The first of these under which most cells of most lines are
+tab, `;`, `,`, `|`, blanks  The first of these under which most cells of most lines are
                             numbers divides columns. Two blanks or more do, and one does
                             not, only where all lines then have equally many columns.
 `0,5` or `1.234,5`          A decimal comma, if no other cell has a decimal point

@@ -45,7 +45,8 @@ def typed_amount(text: str, unit: Unit, si: str) -> float:
         raise ValueError("write a number")
     sizes = {**sizes_of(si), "": unit.factor, unit.name: unit.factor}
     size = sizes.get(behind) or size_in(behind, si)
-    if size is None:
+    # A second number is no unit, though heads of tables have 1 as one.
+    if size is None or behind[:1].isdigit():
         raise ValueError(f"write a number {_in_unit(unit)}")
     return float(f"{value * size:.15g}")
 

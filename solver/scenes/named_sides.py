@@ -17,7 +17,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.plane.body import Body, Held, Load
 from solver.discrete.plane.makers.named_mesh import NamedMesh, OuterLine
-from solver.refusal import RefusedError
+from solver.refusal import LONGEST, RefusedError
 
 CONDITIONS = {
     "free": "nothing acts on it",
@@ -87,11 +87,12 @@ def conditions_of(lines: Sequence[str], given: str) -> Mapping[str, tuple[str, .
             continue
         name, conditions = split_phrase(phrase)
         if not conditions:
-            remedy = f"write “{name} held”, or another of these"
+            remedy = f"write “{name[:LONGEST]} held”, or another of these"
             raise RefusedError("sides", phrase.strip(), ALLOWED, remedy)
         if name.lower() not in names:
             sides = ", ".join(split_phrase(line)[0] for line in lines) or "none"
-            remedy = f"there is no side {name!r}: those of the mesh are {sides}"
+            shown = repr(name[:LONGEST])
+            remedy = f"there is no side {shown}: those of the mesh are {sides}"
             raise RefusedError("sides", phrase.strip(), ALLOWED, remedy)
         known[names[name.lower()]] = conditions
     return known

@@ -11,7 +11,7 @@ from typing import Any
 
 import param
 
-from solver.refusal import RefusedError, is_number, plain
+from solver.refusal import LONGEST, RefusedError, is_number, plain
 from solver.settings.definitions import (
     CurveParameter,
     Parameter,
@@ -112,8 +112,10 @@ def unknown_setting(
 
 def _likeness(name: str, other: str, definition: Parameter) -> float:
     """Similarity of a name to a setting: in spelling, in words, in meaning."""
-    spelling = difflib.SequenceMatcher(None, name.lower(), other).ratio()
-    words = set(name.lower().split("_"))
+    # Whole files have been given as a name, and are compared for seconds.
+    name = name[:LONGEST].lower()
+    spelling = difflib.SequenceMatcher(None, name, other).ratio()
+    words = set(name.split("_"))
     # People mistype a name, turn its words round, or call a setting by its meaning.
     in_name = words & set(other.split("_"))
     meaning = f"{title_of(definition)} {_meaning(definition)}".lower()

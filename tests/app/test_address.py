@@ -28,6 +28,7 @@ from app.worker.runner import Runner
 from solver.files.tables import read_table
 from solver.scenes import CATALOGUE
 from solver.settings.definitions import CurveParameter
+from solver.settings.scene import Settings
 from solver.study.comparison import CAN, results_in
 
 LOOKED_AT: dict[str, Any] = {
@@ -109,6 +110,11 @@ def test_the_way_back_from_a_case_shows_nothing_in_between() -> None:
         ("tab=What if&question=moon", "the question moon cannot be asked here"),
         ("pace=", "5 a second"),
         ("file=load", "open its file"),
+        ("=3", "3 has no name: write a name before it"),
+        ("k_scale=2&k_scale=3", "k_scale has 2 values: the last one is taken"),
+        ("scene=b%00r", "there is no scene b%00r"),
+        ("friction=%E2%80%AE5", "cannot be “%E2%80%AE5”"),
+        ("moon%0Asun=3", "moon%0Asun: there is no such setting"),
     ],
 )
 def test_a_part_that_is_refused_is_told_and_the_rest_holds(
@@ -120,6 +126,44 @@ def test_a_part_that_is_refused_is_told_and_the_rest_holds(
     assert refusal[-1] in ".?"
     assert refusal[-2] not in ".?"
     assert (place["settings"].peak, place["view"]) == (1100.0, "present")
+
+
+@pytest.mark.parametrize(
+    "query", ["&&", "=", "=%20", "scene=bar&scene=bar", "utm_source=mail&fbclid=Iw"]
+)
+def test_what_says_nothing_to_the_page_is_passed_over(query: str) -> None:
+    place, refusal = read(f"?{query}&peak=1100")
+    assert (place["settings"].peak, refusal) == (1100.0, "")
+
+
+@pytest.mark.parametrize(
+    "part",
+    ["", "k_scale=", "scene=", "case=", "tab=", "scene=mesh&sides=", "file=", "load=["],
+)
+def test_a_refusal_of_a_long_text_is_short(part: str) -> None:
+    _, refusal = read(f"?{part}{15_000 * 'x'}")
+    assert 0 < len(refusal) < 400
+
+
+def test_of_thousands_of_unknown_names_few_are_looked_for_and_told(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """An address of 16 000 characters kept the server, and all pages, for 47 s."""
+    replaced = []
+    replace = Settings.replace
+
+    def counted(settings: Settings, **values: Any) -> Settings:
+        replaced.append(values)
+        return replace(settings, **values)
+
+    monkeypatch.setattr(Settings, "replace", counted)
+    names = "&".join([f"a{number}=1" for number in range(1000)])
+    place, refusal = read(f"?{names}&peak=1100")
+    assert place["settings"].peak == 1100.0
+    assert refusal.endswith("; and 995 more.")
+    assert len(refusal) < 2000
+    # Once for each name that is looked for, and once for the rest.
+    assert len(replaced) == 6
 
 
 def test_a_question_that_another_scene_has_waits_for_it_in_silence() -> None:

@@ -189,6 +189,32 @@ def test_a_refusal_is_forgotten_once_the_shown_value_is_typed_again() -> None:
     assert "sun" in field.helper_text
 
 
+def test_a_refusal_is_forgotten_once_the_list_closes_on_the_shown_option() -> None:
+    state = of_scene("strand")
+    field = SettingControl("pressure_load", state).field
+    told: list[bool] = []
+    field.param.watch(lambda event: told.append(event.new), "error_state")
+
+    def choose(option: str) -> None:
+        """Have the browser tell the choice, as soon as the list is closed."""
+        field.dropdown_open = True
+        field.param.update(value=option, dropdown_open=False)
+
+    for refused in ("shaken", "tightening", "tightening"):
+        choose(refused)
+        assert field.value == "steady"
+        assert refused in field.helper_text
+        assert state.refusal == field.helper_text
+    # What is told twice in a moment the browser may show in either order.
+    assert told == [True]
+    choose("steady")
+    assert told == [True, False]
+    assert "cannot" not in field.helper_text + state.refusal
+    choose("shaken")
+    choose("loosening")
+    assert told[-1]
+
+
 def test_a_refusal_has_the_units_and_names_of_the_page_and_keeps_its_other_words() -> (
     None
 ):

@@ -17,7 +17,7 @@ import frames
 import numpy as np
 import pandas as pd
 import pytest
-from bokeh.models import Text, Title
+from bokeh.models import Axis, ColorBar, Text, Title
 from pictures import boxes_of_words
 from small_scenes import SMALL as SMALLEST
 
@@ -36,10 +36,12 @@ from app.messages import TABLE, Needs, Start
 from app.state import PageState, default_settings
 from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
+from app.views.obstacles import Obstacles
 from app.views.pieces import PiecesView
 from app.views.scene import Scene
 from app.views.status_map import StatusMap
 from app.views.timeline import Timeline
+from app.views.type_size import TEXT
 from app.views.view import View
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
@@ -258,6 +260,29 @@ def test_words_above_saved_pieces_are_whole_on_a_phone() -> None:
     (words,) = [part for part in view.figure.above if isinstance(part, Title)]
     assert words.text.startswith("Linear stage")
     assert 6.0 * max(map(len, words.text.splitlines())) <= NARROWEST
+
+
+def test_the_name_of_a_weight_stands_at_its_arrow_in_a_saved_picture() -> None:
+    frame = frames.ran(frames.arch(finish="at-once"))
+    (view,) = _copies([Scene(PageState(frame.run.settings, frame=frame))], frame.run)
+    for phase in (0.25, 0.75):
+        view.update(frame, Selection(phase), None)
+        boxes = dict(boxes_of_words(view))
+        (name,) = [text for text in boxes if text.startswith("W = ")]
+        (arrow,) = Obstacles(view.picture).weights.values()
+        low, high = boxes[name]
+        away = np.hypot(*(arrow - np.clip(arrow, low, high)).T).min()
+        assert away < 1.5 * view.picture.layout.row
+        assert not view.sources["leaders"].data["xs"]
+
+
+def test_light_and_dark_saved_plots_have_type_of_one_size() -> None:
+    state, views = page("block")
+    for view in _copies(views, state.frame.run):
+        for model in view.figure.references():
+            if isinstance(model, Axis | ColorBar | Title):
+                names = [name for name in model.properties() if "font_size" in name]
+                assert {getattr(model, name) for name in names} == {TEXT}
 
 
 def test_the_offline_page_tells_status_and_all_settings_as_the_page_does() -> None:

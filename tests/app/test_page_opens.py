@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import runpy
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 from typing import Any
@@ -21,6 +22,7 @@ from panel.util import edit_readonly
 
 import app.supervisor
 from app.browser import Browser
+from app.command import APP
 from app.lessons.catalogue import LESSONS, settings_of
 from app.messages import WHOLE, Needs, NewFrame, Order, Pace, Start
 from app.page import BARE, COMPACT, Page, open_page
@@ -263,6 +265,26 @@ def test_the_page_of_a_full_server_is_not_watched_for(
     page = open_page()
     assert page.title == "Slipfront"
     assert len(watchers()) == before
+
+
+@pytest.mark.parametrize(
+    ("variable", "value", "allowed"),
+    [
+        ("SLIPFRONT_PAGES", "many", "whole numbers from 1 on"),
+        ("SLIPFRONT_PAGES", "0", "whole numbers from 1 on"),
+        ("SLIPFRONT_PAGES", "2.5", "whole numbers from 1 on"),
+        ("SLIPFRONT_EXECUTOR", "moon", "processes, processes:COUNT, or dask"),
+        ("SLIPFRONT_EXECUTOR", "processes:0", "processes, processes:COUNT, or dask"),
+    ],
+)
+def test_a_server_with_a_foolish_environment_does_not_start_and_says_why(
+    monkeypatch: pytest.MonkeyPatch, variable: str, value: str, allowed: str
+) -> None:
+    monkeypatch.setenv(variable, value)
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_path(str(APP / "app_hooks.py"))
+    said = f'{variable} = "{value}" is refused; allowed: {allowed}'
+    assert str(ended.value).startswith(said)
 
 
 @pytest.mark.usefixtures("orders", "document")

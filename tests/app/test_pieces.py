@@ -320,10 +320,11 @@ def test_words_are_in_lines_no_longer_than_the_figure(size: str) -> None:
     assert letter * max(map(len, lines)) < 400.0
 
 
-def test_without_pieces_there_are_no_words() -> None:
+def test_without_pieces_of_a_scene_there_are_no_words() -> None:
     view = sized(400.0, 260.0, "12px")
     frame, selection, ghost = view._shown  # type: ignore[misc]
-    view.update(replace(frame, extras={}), selection, ghost)
+    other = replace(frame.run, settings=default_settings("strand"))
+    view.update(replace(frame, run=other, extras={}), selection, ghost)
     assert view._told.text == ""
 
 

@@ -14,16 +14,17 @@ import pytest
 from bokeh.core.serialization import Serializer
 from bokeh.document import Document
 from bokeh.events import Tap
-from bokeh.models import DataRange1d, LogScale
+from bokeh.models import DataRange1d, LogScale, SaveTool
 from bokeh.settings import settings
 from frames import frame_of
 from views import MORE, SMALL, VIEWS, frames_of, other_run, settings_of, shown, view_of
 
 from app.frame import Frame, Selection
+from app.lessons.catalogue import CASES
 from app.live import Card
 from app.messages import Needs
 from app.state import PageState, default_settings
-from app.views.bases import Spectra
+from app.views.bases import ClipErrors, Spectra
 from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
 from app.views.errors import Convergence
@@ -68,12 +69,14 @@ def test_figures_are_the_same_where_bokeh_does_not_check_their_values(
         settings.perform_document_validation.unset_value()
 
 
-def test_a_view_of_an_extra_has_none_of_a_frame_before() -> None:
+def test_a_view_of_an_extra_has_none_of_the_scene_before() -> None:
     """Singular values of a bar stood under a block until its own were there."""
     bar = frames_of("bar")[2]
     view = view_of(Spectra, bar)
     assert len(view.sources["values"].data["xs"]) == bar.run.n_substructures
     shown(view, replace(bar, extras={}))
+    assert len(view.sources["values"].data["xs"])
+    shown(view, replace(frames_of("block")[2], extras={}))
     for source in view.sources.values():
         assert not any(map(len, source.data.values()))
 
@@ -311,6 +314,50 @@ def test_each_substructure_has_its_curve_of_singular_values(
     frame = frame_of(settings, Needs(extras=frozenset({"spectra"})), ends=False)
     data = view_of(Spectra, frame).sources["values"].data
     assert len(data["xs"]) == len(data["part"]) == count
+
+
+@pytest.mark.parametrize("kind", VIEWS)
+def test_a_plot_is_saved_under_its_name(kind: type[View]) -> None:
+    # Without one the browser asks for it, and proposes that of the library.
+    plot = untouched(kind).figure
+    tools = [tool for tool in plot.tools if isinstance(tool, SaveTool)]
+    # Pictures of bodies have no tools.
+    assert len(tools) == int(bool(plot.toolbar.tools))
+    assert {tool.filename for tool in tools} <= {kind.name}
+
+
+def pile(kind: type[View]) -> View:
+    """A view of a pile, all of which slips at once: one mode and one vector do."""
+    settings = CASES["pile"].settings.replace(finish="at-once")
+    frame = frame_of(settings, Needs(extras=kind.needs), ends=True)
+    return view_of(kind, frame)
+
+
+def test_a_single_singular_value_is_a_dot() -> None:
+    view = pile(Spectra)
+    curves = view.sources["values"].data
+    dots = view.sources["alone"].data
+    assert {*map(len, curves["ys"])} == {1}
+    assert [*dots["y"]] == [values[0] for values in curves["ys"]]
+    assert [*dots["part"]] == [*curves["part"]]
+    assert all(view.figure.x_range.start < x for x in dots["x"])
+
+
+def test_a_form_of_storage_with_one_point_is_a_dot() -> None:
+    view = pile(ClipErrors)
+    curve = view.sources["SVD"].data
+    dot = view.sources["first SVD"].data
+    assert [*dot["x"]] == [*curve["x"]]
+    assert len(dot["x"]) == 1
+    assert view.figure.y_range.start < dot["y"][0]
+
+
+def test_singular_values_wait_for_the_worker_to_send_them() -> None:
+    last = frames_of("bar")[1]
+    view = view_of(Spectra, last)
+    count = len(view.sources["values"].data["xs"])
+    shown(view, replace(last, extras={}))
+    assert count == last.run.n_substructures == len(view.sources["values"].data["xs"])
 
 
 def test_the_dot_of_the_instant_lies_on_the_loop() -> None:

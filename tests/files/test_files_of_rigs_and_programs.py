@@ -170,6 +170,11 @@ KINDS: dict[str, str | bytes] = {
     ),
     "a last line that was cut off": "t u[mm] F[N]\n" + ROWS + "2.0 -3\n",
     "a line that names the separator": "sep=;\nt;u [mm];F [N]\n" + GERMAN,
+    "bars between columns": PLAIN.replace(",", "|"),
+    "a table of Markdown, with decimal commas": (
+        "| t [s] | u [mm] | F [N] |\n|---|---:|:---|\n| 0 | 0 | 0 |\n"
+        "| 0,5 | 1,5 | 1234,5 |\n| 1 | 2,25 | 2000 |\n| 1,5 | -1 | -500,25 |\n"
+    ),
     "lines of a Mac of before 2001, and the end of a file of DOS": PLAIN.replace(
         "\n", "\r"
     )

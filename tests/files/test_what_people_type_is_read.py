@@ -40,6 +40,7 @@ TYPED = [
 ]
 REFUSED = [
     ("friction", "2 kN", "write a number without a unit"),
+    ("friction", "0.3 1", "write a number without a unit"),
     ("friction", "1/3", "write a number without a unit"),
     ("friction", "inf", "choose a value inside this range"),
     ("friction", "nan", "choose a value inside this range"),
@@ -48,6 +49,7 @@ REFUSED = [
     ("friction", "half", "write a number"),
     ("friction", "1,234", "write 1234 or 1.234, as the comma may mean both"),
     ("peak", "2 m", "write a number in N"),
+    ("peak", "9 1 N", "write a number in N"),
     ("instants", "2.5", "write a whole number"),
     ("multiscale", "maybe", "write true or false"),
 ]

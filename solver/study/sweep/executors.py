@@ -207,6 +207,28 @@ def opened(on: str, limit: float | None = None, n_calls: int = 0) -> Iterator[Ex
     SettingError
         For a text that names none, or a cluster that cannot be reached.
     """
+    count = check_name(on)
+    if count is None:
+        with _cluster(on.removeprefix(DASK)) as executor:
+            yield executor
+        return
+    executor = Processes(count, limit, n_calls)
+    try:
+        yield executor
+    finally:
+        executor.shutdown(cancel_futures=True)
+
+
+def check_name(on: str) -> int | None:
+    """Check the name of an executor; return its number of processes, None for Dask.
+
+    Raises
+    ------
+    SettingError
+        For a text that names none.
+    """
+    if on.startswith(DASK) and on != DASK:
+        return None
     kind, colon, rest = on.partition(":")
     # A colon without a number gives 0, which is refused below.
     if rest.isdecimal():
@@ -215,19 +237,10 @@ def opened(on: str, limit: float | None = None, n_calls: int = 0) -> Iterator[Ex
         count = 0
     else:
         count = processors()
-    if on.startswith(DASK) and on != DASK:
-        with _cluster(on.removeprefix(DASK)) as executor:
-            yield executor
-    elif kind == "processes" and 1 <= count <= MOST_PROCESSES:
-        executor = Processes(count, limit, n_calls)
-        try:
-            yield executor
-        finally:
-            executor.shutdown(cancel_futures=True)
-    else:
-        raise SettingError(
-            "--on", on, FORMS, f"name one, with at most {MOST_PROCESSES} processes"
-        )
+    if kind == "processes" and 1 <= count <= MOST_PROCESSES:
+        return count
+    remedy = f"name one, with at most {MOST_PROCESSES} processes"
+    raise SettingError("--on", on, FORMS, remedy)
 
 
 @contextmanager
