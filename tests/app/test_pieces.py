@@ -12,7 +12,7 @@ from bokeh.events import Tap
 from app.frame import LINEAR, Frame, Selection
 from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Start
-from app.state import PageState
+from app.state import PageState, default_settings
 from app.views.pieces import PiecesView
 from app.worker.piece_joints import MOST_JOINTS
 from app.worker.pieces import Cutter, Pieces
