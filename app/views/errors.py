@@ -27,7 +27,7 @@ FOOT = 0.05
 NAMED = 1.25
 """Least length of the axis of iterations over that of the curves, at whose ends their
 names stand."""
-APART = 0.1
+APART = 0.085
 """Least distance of two of these names over the height of the axis."""
 SEEN_IN_TIME = (1e-2, 2.0)
 """Errors over run time that are in sight in any case."""
@@ -183,9 +183,13 @@ class Convergence(View):
 
 
 def spread(heights: Sequence[float], apart: float) -> list[float]:
-    """Ascending heights between 0 and 1, raised and lowered to distances of `apart`."""
+    """Ascending heights between 0 and 1, raised and lowered to distances of `apart`.
+
+    Half of that is free below the lowest one.
+    """
     steps = apart * np.arange(len(heights))
-    raised = np.maximum.accumulate(np.asarray(heights) - steps)
+    inside = np.maximum(heights, 0.5 * apart)
+    raised = np.maximum.accumulate(inside - steps)
     # What was pushed beyond the upper end goes down, and others before it.
     moved = np.minimum(raised, 1.0 - apart * len(heights)) + steps
     return [float(height) for height in moved]
