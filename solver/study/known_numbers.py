@@ -453,10 +453,15 @@ def dovetail(answer: SolvedCase) -> Iterator[Number]:
     side = next(side for side in settings.parts.sides if side.name.startswith("top"))
     width = settings.parts.shapes[side.body].shares(side.nodes).sum()
     across, upward = np.abs(settings.parts.contacts[0].normals[0])
-    names = [contact.name for contact in settings.parts.contacts]
     for instant, sign, words in ((turned, 1.0, "pulled"), (back, -1.0, "let go")):
         carried = 2.0 * (upward + sign * settings.friction * across)
         known = tractions[instant] * width / carried
-        flanks = [answer.pressing(name)[:, instant].sum() for name in names]
-        found = float(np.mean(flanks))
+        found = _mean_of_flanks(answer, instant)
         yield f"normal force of a flank, {words}", "N", float(known), found
+
+
+def _mean_of_flanks(answer: SolvedCase, instant: int) -> float:
+    """Mean of the normal forces of all contacts of a mesh at an instant, N."""
+    names = [contact.name for contact in answer.settings.parts.contacts]
+    forces = [answer.pressing(name)[:, instant].sum() for name in names]
+    return float(np.mean(forces))

@@ -20,7 +20,7 @@ from solver.settings.load_paths import PRESETS
 TIME = np.linspace(0.0, 1.0, 11)
 STIFFNESS = 6e5
 CLAMPED = End(displacement=0.0 * TIME)
-FREE = End(force=0.0 * TIME)
+FREE = End()
 PULLED = End(force=900.0 * TIME)
 
 

@@ -70,11 +70,36 @@ def _motion_without_friction(rods: Rods) -> Array:
 
     At the instant of the largest force on a node.
     """
-    element = rods.length / rods.elements
-    stiffness = np.full(rods.elements, rods.stiffness / element)
+    stiffness = np.full(rods.elements, rods.stiffness * rods.elements / rods.length)
     if rods.section is not None:
         stiffness *= rods.section
     diagonal = np.append(stiffness, 0.0) + np.insert(stiffness, 0, 0.0)
+    force = _force_along(rods, stiffness)
+    held = np.zeros_like(force)
+    for node, beside, end in ((0, 1, rods.left), (-1, -2, rods.right)):
+        if end.is_prescribed:
+            held[node] = displacement_of(end, rods, node)
+            force[beside] += stiffness[node] * held[node]
+        elif end.force is not None:
+            force[node] += end.force
+        elif end.is_on_spring:
+            diagonal[node] += end.spring
+            force[node] += end.spring * displacement_of(end, rods, node)
+    first = int(rods.left.is_prescribed)
+    free = slice(first, len(force) - int(rods.right.is_prescribed))
+    largest = int(np.argmax(np.abs(force[free]).max(axis=0)))
+    bands = np.stack([np.insert(-stiffness, 0, 0.0), diagonal])[:, free]
+    moved: Array = held[:, largest]
+    moved[free] = solveh_banded(bands, force[free, largest])
+    return moved
+
+
+def _force_along(rods: Rods, stiffness: Array) -> Array:
+    """Forces of loads along a rod on its nodes, shape (n_nodes, n_instants), N.
+
+    `stiffness` is that of the elements, (n_elements,), N/m.
+    """
+    element = rods.length / rods.elements
     force = np.zeros((rods.elements + 1, len(rods.instants)))
     if rods.body_force is not None:
         shares = np.full(rods.elements + 1, element)
@@ -83,21 +108,4 @@ def _motion_without_friction(rods: Rods) -> Array:
     strained = force_of_strains(rods, stiffness * element)
     if strained is not None:
         force -= np.diff(strained, axis=0, prepend=0.0, append=0.0)
-    held = np.zeros_like(force)
-    free = slice(int(rods.left.is_prescribed), None)
-    if rods.right.is_prescribed:
-        free = slice(free.start, -1)
-    for node, beside, end in ((0, 1, rods.left), (-1, -2, rods.right)):
-        if end.is_prescribed:
-            held[node] = displacement_of(end, rods, node)
-            force[beside] += stiffness[node] * held[node]
-        elif end.force is not None:
-            force[node] += end.force
-        elif end.displacement is not None:
-            diagonal[node] += end.spring
-            force[node] += end.spring * displacement_of(end, rods, node)
-    largest = int(np.argmax(np.abs(force[free]).max(axis=0, initial=0.0)))
-    bands = np.stack([np.insert(-stiffness, 0, 0.0), diagonal])[:, free]
-    moved: Array = held[:, largest]
-    moved[free] = solveh_banded(bands, force[free, largest])
-    return moved
+    return force
