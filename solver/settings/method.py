@@ -14,7 +14,12 @@ from solver.settings.definitions import (
     SettingGroup,
     properties_of,
 )
-from solver.settings.values import SettingError, checked_value, unknown_setting
+from solver.settings.values import (
+    SettingError,
+    checked_value,
+    had_no_effect,
+    unknown_setting,
+)
 
 STOP = SettingGroup("Stop")
 
@@ -237,6 +242,8 @@ class MethodSettings(param.Parameterized):
         definitions = cls.definitions()
         clean = {}
         for name, value in values.items():
+            if had_no_effect(name, value):
+                continue
             if name not in definitions:
                 raise unknown_setting(name, value, cls.scene, definitions)
             clean[name] = checked_value(definitions[name], name, value)

@@ -6,6 +6,7 @@ import difflib
 import re
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from textwrap import shorten
 from typing import Any
 
@@ -24,13 +25,31 @@ from solver.settings.definitions import (
 
 FAR = 1e6
 """Bound from which on a message calls a range unlimited: no problem has such values."""
+
+
+@dataclass(frozen=True)
+class Removed:
+    """A setting of early versions that exists no more.
+
+    Attributes
+    ----------
+    reason
+        What came in its place, a clause.
+    neutral
+        The value without effect, which saved files may have.
+    """
+
+    reason: str
+    neutral: object
+
+
 REMOVED = {
-    "interpolation": "paths are linear between their points",
-    "k_friction_scale": "k_scale is for all interfaces",
-    "k_normal_scale": "k_scale is for all interfaces",
-    "k_update": "the automatic search direction suits sooner than k that follows slip",
+    "interpolation": Removed("paths are linear between their points", "linear"),
+    "k_friction_scale": Removed("k_scale is for all interfaces", 1.0),
+    "k_normal_scale": Removed("k_scale is for all interfaces", 1.0),
+    "k_update": Removed("the automatic search direction suits sooner", "none"),
 }
-"""Settings of early versions that exist no more, with the reason."""
+"""Settings of early versions that exist no more, by name."""
 NEAREST = 3
 """Largest number of settings that the refusal of an unknown name proposes."""
 ALIKE = 0.5
@@ -91,6 +110,11 @@ def _allowed_numbers(definition: Any) -> str:
     return f"any number from 0 on (to {maximum})"
 
 
+def had_no_effect(name: str, value: object) -> bool:
+    """Check whether a value is that of a removed setting that had no effect."""
+    return name in REMOVED and value == REMOVED[name].neutral
+
+
 def unknown_setting(
     name: str, value: object, scene: str, known: Mapping[str, Parameter]
 ) -> SettingError:
@@ -98,7 +122,7 @@ def unknown_setting(
     can = f"a setting of {scene}"
     if name in REMOVED:
         return SettingError(
-            name, value, can, f"it is gone: {REMOVED[name]}; leave it out"
+            name, value, can, f"it is gone: {REMOVED[name].reason}; leave it out"
         )
     likeness = {other: _likeness(name, other, known[other]) for other in known}
     near = [other for other in likeness if likeness[other] >= ALIKE]

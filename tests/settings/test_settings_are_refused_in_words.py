@@ -125,8 +125,11 @@ def test_unknown_names_are_refused_with_the_nearest_ones_and_their_meaning(
 
 @pytest.mark.parametrize("name", REMOVED)
 def test_removed_settings_are_refused_as_removed(name):
-    text = refusal(lambda: BarSettings.checked({name: 1.0}))
-    assert f"it is gone: {REMOVED[name]}; leave it out" in text
+    text = refusal(lambda: BarSettings.checked({name: 0.5}))
+    assert f"it is gone: {REMOVED[name].reason}; leave it out" in text
+    # Files of early versions have all settings.
+    settings = BarSettings.checked({name: REMOVED[name].neutral, "friction": 0.2})
+    assert settings.values() == BarSettings.checked({"friction": 0.2}).values()
 
 
 def test_names_that_are_no_settings_are_refused():
