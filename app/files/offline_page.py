@@ -16,6 +16,7 @@ from bokeh.models import (
     Axis,
     ColorBar,
     CustomJS,
+    DataRange1d,
     Div,
     PointDrawTool,
     Slider,
@@ -32,6 +33,7 @@ from app.status import figures_line, status_line
 from app.templates import TEMPLATES
 from app.views.layout import shape_of
 from app.views.pieces import PiecesView
+from app.views.rope import WireSection
 from app.views.scene import Scene
 from app.views.type_size import TEXT
 from app.views.view import View
@@ -188,6 +190,10 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
             # Its words are not scaled either, and their lines are those of a phone.
             view.lay_out(NARROWEST, PIECES)
             plot.max_width = WIDE_PIECES
+        if isinstance(view, WireSection):
+            # Nobody tells its size either: there it stays in its place.
+            ranges = {"x_range": DataRange1d(), "y_range": DataRange1d()}
+            plot.update(match_aspect=True, **ranges)
         _set_labels(plot)
         plot.tools = [
             tool for tool in plot.tools if not isinstance(tool, PointDrawTool)

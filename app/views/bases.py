@@ -11,7 +11,7 @@ from app.frame import Floats, Frame, Selection
 from app.units import percent
 from app.views.axis import whole
 from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scaled
-from app.views.parts import color_bar, explain, hover
+from app.views.parts import color_bar, hover
 from app.views.view import ExtraView
 from app.worker.cells import thinned
 from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
@@ -82,7 +82,6 @@ class Spectra(ExtraView):
         self.x.hold(frame.run.number, limits, margin=0.02)
         self._bar.visible = count > 1
         self._colors.high = max(count, 2)
-        explain(self._bar, self._colors)
 
 
 class ModePlot(ExtraView):

@@ -13,7 +13,7 @@ from app.frame import Frame, Selection
 from app.views.axis import rounded_up
 from app.views.colors import ERROR, LATIN
 from app.views.layout import Layout
-from app.views.parts import color_bar, explain
+from app.views.parts import color_bar
 from app.views.picture import Picture
 from app.views.scene import Scene
 from solver.files.amounts import unit_for
@@ -85,7 +85,7 @@ class Stress(ExtraScene):
             self.colors.update(palette=RdBu11, low=-high, high=high)
         else:
             self.colors.update(palette=Cividis256, low=0.0, high=high)
-        explain(self.bar, self.colors, f"{title}, {unit.name}")
+        self.bar.title = f"{title}, {unit.name}"
         corners = picture.many(picture.nodes[picture.frame.run.geometry.cells])
         self.fill("stress", **corners, value=values[:, picture.column] / unit.factor)
 

@@ -10,6 +10,7 @@ import numpy as np
 import panel as pn
 from bokeh.models import (
     ColorBar,
+    CustomJS,
     Glyph,
     GlyphRenderer,
     HoverTool,
@@ -37,6 +38,8 @@ Object.defineProperty(HTMLStyleElement.prototype, "textContent", {
 """Script that has the browser read a style sheet anew only where its text is another.
 Bokeh sets those of all parts of a figure for each picture, and asks for styles in
 between (https://github.com/bokeh/bokeh/issues/15286): a fifth of the browser's time."""
+LAY_OUT = "Bokeh.index.find_one(plot)?.invalidate_layout()"
+"""Script that lays a figure out anew."""
 
 
 def bare(
@@ -68,9 +71,14 @@ def bare(
 
 
 def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
-    """A colour bar at the right of a figure; `explain` sets its colours."""
+    """A colour bar at the right of a figure, which follows its colours.
+
+    The bar keeps its mapper: where a figure that the browser knows comes to another
+    card, Bokeh sets what is new in it before that is complete
+    (https://github.com/bokeh/bokeh/pull/13710).
+    """
     bar = ColorBar(
-        color_mapper=colors.clone(),
+        color_mapper=colors,
         width=9,
         # Half of a letter: values at its ends are read in full.
         padding=7,
@@ -81,18 +89,13 @@ def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
         **look,
     )
     plot.add_layout(bar, "right")
+    # Bokeh keeps its width: with other limits its values would be cut, and with another
+    # title that would lie on the plot.
+    script = CustomJS(args={"plot": plot}, code=LAY_OUT)
+    bar.js_on_change("title", script)
+    colors.js_on_change("low", script)
+    colors.js_on_change("high", script)
     return bar
-
-
-def explain(bar: ColorBar, colors: LinearColorMapper, title: str | None = None) -> None:
-    """Set colours, limits and title of a colour bar.
-
-    A bar is laid out again for another mapper alone: with other limits or another title
-    its values would be cut, and its title would lie on the plot.
-    """
-    shown = bar.color_mapper
-    if (bar.title, shown.low, shown.high) != (title, colors.low, colors.high):
-        bar.update(title=title, color_mapper=colors.clone())
 
 
 def hover(

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 from bokeh.events import Tap
-from bokeh.models import DataRange1d, LinearColorMapper
+from bokeh.models import LinearColorMapper
 from bokeh.palettes import Cividis256
 
 from app.frame import Frame, Selection
 from app.views.axis import extent, rounded_up
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
 from app.views.flags import FLAGS, add_flag, show_flag
-from app.views.parts import color_bar, explain, hover, joined
+from app.views.parts import color_bar, hover, joined
 from app.views.view import ExtraView
 from app.worker.geometry import MOST_WIRES
 from solver.files.amounts import unit_for
@@ -23,6 +23,11 @@ COLORS = [color for color in RANKS if color != ERROR]
 """Colours of wires; a broken wire has the colour of errors."""
 WIRES = [str(number) for number in range(MOST_WIRES + 1)]
 """Names of the curves of wires, with one for a broken wire."""
+WIDTH = 340.0
+HEIGHT = 200.0
+"""Size of a section until the browser has told it, px."""
+SPARE = 1.1
+"""Half of the smaller side of a section over the radius of the strand."""
 
 
 class WireSection(ExtraView):
@@ -38,9 +43,7 @@ class WireSection(ExtraView):
 
     def make(self) -> None:
         """Draw the wires as circles, the colour bar of the stress, and the legend."""
-        plot = self.begin(
-            match_aspect=True, x_range=DataRange1d(), y_range=DataRange1d()
-        )
+        plot = self.begin()
         plot.axis.visible = False
         plot.center = []
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
@@ -51,21 +54,12 @@ class WireSection(ExtraView):
             also="stress",
             fill_color={"field": "stress", "transform": self.colors},
         )
-        # A circle of no size: BokehJS complains of ranges that follow no data.
-        self.fill(
-            "wires",
-            x=[0.0],
-            y=[0.0],
-            radius=[0.0],
-            stress=[0.0],
-            line_color=["white"],
-            line_width=[0.0],
-        )
         self.bar = color_bar(plot, self.colors)
         rings = {key: KEYS[key] for key in ("slip →", "slip ←")} | {"selected": ERROR}
         self.mark(rings, fill_color="white", line_width=3, marker="circle")
         self.legend(*rings)
         plot.on_event(Tap, self._tap)
+        self.follow_size(WIDTH, HEIGHT)
 
     def _show(self, cut: Any, frame: Frame, selection: Selection) -> None:
         run = frame.run
@@ -78,7 +72,9 @@ class WireSection(ExtraView):
         last = max(math.ceil(high / step), first + 1)
         self.colors.update(low=first * step, high=last * step)
         place = unit_for(1.0, "m")(cut["position"])
-        explain(self.bar, self.colors, f"stress, {unit.name}, at x = {place}")
+        self.bar.title = f"stress, {unit.name}, at x = {place}"
+        reach = np.linalg.norm(cut["centres"], axis=1) + cut["radii"]
+        self._fit(float(reach.max()))
         slips = cut["slips"][:, column]
         selected = list(run.interfaces).index(run.interface(selection.interface))
         chosen = cut["wires"] == selected
@@ -95,6 +91,17 @@ class WireSection(ExtraView):
             line_color=rings.tolist(),
             line_width=np.where(slips != 0, 3.0, np.where(chosen, 2.5, 1.0)),
         )
+
+    def _fit(self, radius: float) -> None:
+        """Set the limits to a strand, by its radius in m: it is as wide as high.
+
+        Ranges of Bokeh that follow data would keep the limits that they have as the
+        figure comes to another card.
+        """
+        half = SPARE * radius * self.room / self.room.min()
+        width, height = half.tolist()
+        self.x.span(-width, width)
+        self.y.span(-height, height)
 
     def _tap(self, event: Any) -> None:
         """Select the wire under the pointer; the core has no interface."""

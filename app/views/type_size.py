@@ -46,5 +46,5 @@ def magnify(plot: figure, size: str, words: str) -> None:
         if size != TEXT:
             tags = [sizes]
         model.update(tags=tags, **sizes)
-        if not model.js_property_callbacks:
+        if f"change:{names[0]}" not in model.js_property_callbacks:
             model.js_on_change(names[0], keep)

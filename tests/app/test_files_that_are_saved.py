@@ -38,6 +38,7 @@ from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
 from app.views.obstacles import Obstacles
 from app.views.pieces import PiecesView
+from app.views.rope import WireSection
 from app.views.scene import Scene
 from app.views.status_map import StatusMap
 from app.views.timeline import Timeline
@@ -250,6 +251,18 @@ def test_words_of_a_saved_picture_are_whole_on_a_phone_without_the_font(
     for text, box in boxes_of_words(view, letter=letter):
         assert box[0, 0] >= 0.0, text
         assert box[1, 0] <= NARROWEST, text
+
+
+def test_a_saved_cross_section_is_as_wide_as_high_at_any_size() -> None:
+    settings = default_settings("rope").replace(**SMALLEST["rope"])
+    needs = Needs(extras=frozenset({"section"}))
+    frame = frames.frame_of(settings, needs, ends=False)
+    (view,) = _copies([WireSection(PageState(settings, frame=frame))], frame.run)
+    view.update(frame, Selection(0.4), None)
+    plot = view.figure
+    assert plot.match_aspect
+    # The browser computes their ends.
+    assert np.isnan([plot.x_range.start, plot.y_range.end]).all()
 
 
 def test_words_above_saved_pieces_are_whole_on_a_phone() -> None:

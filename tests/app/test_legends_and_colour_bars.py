@@ -9,10 +9,11 @@ from app.state import PageState, default_settings
 from app.views.errors import Convergence, ErrorTime
 from app.views.inside import Stress
 from app.views.loops import HysteresisLoop
-from app.views.parts import bare, color_bar, explain
+from app.views.parts import bare, color_bar
 from app.views.rope import WireSection
 from app.views.scene import Scene
 from app.views.timeline import Timeline
+from app.views.type_size import magnify
 from app.views.view import View
 
 
@@ -55,19 +56,22 @@ def test_marks_of_a_legend_are_as_large_as_its_words() -> None:
     assert legend.glyph_height == 12
 
 
-def test_a_colour_bar_is_laid_out_anew_for_other_values_and_only_then() -> None:
-    # Bokeh lays a bar out for another mapper, not for other limits of the same one.
+@pytest.mark.parametrize("size", ["12px", "28px"])
+def test_a_figure_is_laid_out_anew_for_other_values_of_its_colour_bar(
+    size: str,
+) -> None:
+    # Bokeh itself leaves the bar its width.
     colors = LinearColorMapper(palette=["black", "white"], low=0.0, high=1.0)
-    bar = color_bar(bare(90, (0, 1), (0, 1)), colors)
-    for high, title in [(1.0, "force, N"), (1000.0, "force, N"), (1000.0, "force, kN")]:
-        before = bar.color_mapper
-        colors.high = high
-        explain(bar, colors, title)
-        assert (bar.title, bar.color_mapper.high) == (title, high)
-        assert bar.color_mapper not in (before, colors)
-        laid_out = bar.color_mapper
-        explain(bar, colors, title)
-        assert bar.color_mapper is laid_out
+    plot = bare(90, (0, 1), (0, 1))
+    bar = color_bar(plot, colors)
+    magnify(plot, size, size)
+    for model, name in [(colors, "low"), (colors, "high"), (bar, "title")]:
+        (script,) = model.js_property_callbacks[f"change:{name}"]
+        assert script.args == {"plot": plot}
+        assert "invalidate_layout" in script.code
+    # Its words keep a size that is not the theme's, too.
+    sizes = [name for name in bar.js_property_callbacks if "font_size" in name]
+    assert len(sizes) == 1
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ from app.views.errors import Convergence
 from app.views.inside import Stress
 from app.views.loops import HysteresisLoop
 from app.views.pieces import PiecesView
-from app.views.rope import AxialForces
+from app.views.rope import AxialForces, WireSection
 from app.views.scene import Scene
 from app.views.status_map import StatusMap
 from app.views.timeline import Timeline
@@ -108,14 +108,26 @@ def test_a_view_shows_each_frame_of_all_that_it_applies_to(kind: type[View]) -> 
             assert frame is first or draws_something(view), case
 
 
-def has_wide_axes(view: View) -> bool:
-    """Check that the axes of a figure show a range.
+@pytest.mark.parametrize("kind", [Scene, Timeline, *VIEWS])
+def test_a_figure_keeps_its_models_with_each_frame(kind: type[View]) -> None:
+    """A colour bar had a new mapper while its figure came to another card.
 
-    The browser computes the ends of a range that follows data.
+    The browser draws with the models of a figure that it knows before new ones among
+    them are complete, where both come in a message.
     """
+    view = kind(PageState(default_settings("bar")))
+    models = view.layout.references()
+    for case in (*SMALL, *MORE):
+        if kind.applies(settings_of(case)):
+            for frame in frames_of(case):
+                shown(view, frame)
+                assert view.layout.references() == models, case
+
+
+def has_wide_axes(view: View) -> bool:
+    """Check that the axes of a figure show a range."""
     axes = [view.figure.x_range, view.figure.y_range]
-    fixed = [each for each in axes if not isinstance(each, DataRange1d)]
-    return all(each.start < each.end for each in fixed)
+    return all(each.start < each.end for each in axes)
 
 
 def fits_a_logarithmic_axis(view: View) -> bool:
@@ -135,15 +147,33 @@ def draws_something(view: View) -> bool:
     return any(len(column) for column in columns)
 
 
-def test_ranges_that_follow_data_have_some_before_a_view_is_updated() -> None:
-    # BokehJS would complain in the console.
-    views = [untouched(kind) for kind in VIEWS]
-    follow = [v for v in views if isinstance(v.figure.x_range, DataRange1d)]
-    assert follow
-    for view in follow:
-        assert any(
-            np.isfinite(source.data["x"]).any() for source in view.sources.values()
-        )
+@pytest.mark.parametrize("kind", VIEWS)
+def test_ranges_do_not_follow_data(kind: type[View]) -> None:
+    """A cross-section was tiny in a card to which it came before it had wires.
+
+    Ranges that follow data keep the limits that a figure brings to another card, and
+    without data BokehJS complains of them in the console.
+    """
+    plot = untouched(kind).figure
+    assert not plot.select(DataRange1d)
+
+
+@pytest.mark.parametrize("room", [(400.0, 200.0), (200.0, 300.0)])
+def test_a_cross_section_is_as_wide_as_high_and_whole(
+    room: tuple[float, float],
+) -> None:
+    view = WireSection(PageState(default_settings("rope")))
+    assert view.figure is not None
+    view.lay_out(*room)
+    shown(view, frames_of("rope")[2])
+    wires = view.sources["wires"].data
+    per_pixel = []
+    for side, name, pixels in zip("xy", ("x_range", "y_range"), room, strict=True):
+        limits = getattr(view.figure, name)
+        assert limits.start < min(np.subtract(wires[side], wires["radius"]))
+        assert limits.end > max(np.add(wires[side], wires["radius"]))
+        per_pixel.append((limits.end - limits.start) / pixels)
+    assert per_pixel[0] == pytest.approx(per_pixel[1])
 
 
 @pytest.mark.parametrize("case", ["bar", "block", "strand"])
