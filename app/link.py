@@ -36,7 +36,7 @@ from solver.settings.values import checked_value
 
 ALIKE = 0.6
 """Likeness of a name to the one that it is taken for, at least."""
-MOST = 5
+MOST = 10
 """Largest number of refusals that are told in full, and of unknown names for which ones
 that are alike are searched."""
 OF_OTHERS = re.compile(r"theme|utm_\w+|fbclid|gclid")

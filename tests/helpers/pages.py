@@ -22,7 +22,7 @@ PHONE = {"width": 390, "height": 844, "has_touch": True, "is_mobile": True}
 IGNORED = re.compile(
     "GL Driver Message|Failed to repull session"
     "|WebSocket connection to .* failed|Failed to connect to Bokeh server: Could not "
-    "open websocket"
+    "open websocket|not connected so cannot send"
 )
 """In the console: a hint on speed, and what is said of a network that is cut, and
 was."""
