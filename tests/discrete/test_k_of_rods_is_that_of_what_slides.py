@@ -77,6 +77,7 @@ def test_a_coarse_rod_has_a_length_that_slides(elements: int, right: End) -> Non
         {"left": FREE},
         {"left": End(displacement=0.0 * TIME, spring=1.0), "body_force": 5.0 * TIME},
         {"left": End(displacement=1e-3 * TIME, spring=1e6), "right": FREE},
+        {"left": End(displacement=0.0 * TIME, spring=1e-15)},
         {"right": CLAMPED, "strain": np.multiply.outer(np.full(100, 1e-4), TIME)},
     ],
     ids=[
@@ -84,6 +85,7 @@ def test_a_coarse_rod_has_a_length_that_slides(elements: int, right: End) -> Non
         "nothing holds",
         "a soft spring",
         "a moved spring",
+        "a spring as soft as rounding",
         "heated between clamps",
     ],
 )
