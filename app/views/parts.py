@@ -71,7 +71,7 @@ def bare(
 
 
 def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
-    """A colour bar at the right of a figure, which follows its colours.
+    """A colour bar at the right of a figure, hidden until there are values.
 
     The bar keeps its mapper: where a figure that the browser knows comes to another
     card, Bokeh sets what is new in it before that is complete
@@ -79,6 +79,7 @@ def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
     """
     bar = ColorBar(
         color_mapper=colors,
+        visible=False,
         width=9,
         # Half of a letter: values at its ends are read in full.
         padding=7,

@@ -72,6 +72,7 @@ class WireSection(ExtraView):
         last = max(math.ceil(high / step), first + 1)
         self.colors.update(low=first * step, high=last * step)
         place = unit_for(1.0, "m")(cut["position"])
+        self.bar.visible = True
         self.bar.title = f"stress, {unit.name}, at x = {place}"
         reach = np.linalg.norm(cut["centres"], axis=1) + cut["radii"]
         self._fit(float(reach.max()))

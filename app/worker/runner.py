@@ -12,7 +12,6 @@ from app.messages import WHOLE, Needs, Start
 from app.worker.references import LastAnswer, ReferenceCache, has_reference
 from app.worker.sampling import Sampler
 from solver.latin import (
-    Answer,
     Decision,
     Ending,
     Iterate,
@@ -41,9 +40,6 @@ Intervals shrink by one ratio: the first iterates are seen one by one, and a hun
 iterations last as long as thirty."""
 SOON = 0.1
 """Estimated time of a reference up to which the first picture waits for it, s."""
-KEPT = 24_000_000
-"""Largest memory of the iterates of a run that are kept to be shown again, bytes;
-beyond, every other one is dropped."""
 LATE = 0.1
 """Longest delay, s, that iterations make up for. Pictures are painted between them."""
 
@@ -139,7 +135,6 @@ class Runner:
         self.answer: LastAnswer | None = None
         self._certificate: Certificate | None = None
         self.has_news = False
-        self._kept: dict[int, Iterate] = {}
         self.pacing = Pacing(start.pace, start.steps)
         self._before = before
         self._is_near = False
@@ -204,21 +199,11 @@ class Runner:
 
     def earlier(self, iteration: int, needs: Needs) -> Frame | None:
         """Frame of an earlier iteration; None if that is not stored."""
-        iterate = self._kept.get(iteration)
+        iterate = self.sampler.past.numbered(iteration)
         if iterate is None:
             return None
         history = self.history[:iteration]
         return self.sampler.frame(iterate, history, None, needs)
-
-    def _keep(self, iterate: Iterate) -> None:
-        """Store an iterate of the search, to be shown again."""
-        # Without the fields that are computed from it, as large as its own.
-        self._kept[iterate.number] = replace(iterate)
-        # An iterate has four fields of this size.
-        most = max(KEPT // (4 * iterate.outgoing.nbytes), 2)
-        if len(self._kept) > most:
-            for number in list(self._kept)[1::2]:
-                del self._kept[number]
 
     def _start_near(self, before: States) -> None:
         """Try to find the answer from the states of another run, once."""
@@ -253,8 +238,6 @@ class Runner:
             # The iterate before stays, whose numbers can be drawn.
             return
         self.iterate = iterate
-        if not isinstance(iterate, Answer):
-            self._keep(iterate)
         self.sampler.keep(iterate)
         self.history.append(record(iterate, decision, self._distance))
         if self.status is not None and decision.certificate is not None:

@@ -14,9 +14,10 @@ from app.messages import TABLE, Needs
 from app.worker.cells import floats, thinned
 from app.worker.extras import EXTRAS, Sampled
 from app.worker.geometry import DrawnMesh, DrawnRods
+from app.worker.past_iterates import PastIterates
 from app.worker.pieces import Cutter
 from app.worker.strand import DrawnRope
-from app.worker.zigzag import Trail, zigzag
+from app.worker.zigzag import zigzag
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.probes import LoopFields
@@ -72,6 +73,7 @@ class Sampler:
     """Sampler of one problem: thinned fields, with forces per length or area.
 
     `run` is the part that all frames share, to which `complete` adds the reference.
+    `past` are the iterates of the search that may be shown again.
     `columns` are the indices of the instants that are shown, shape (n_shown,), and
     `rows` those of the points, by interface; `drawn` has the geometry of the drawing.
     """
@@ -93,7 +95,8 @@ class Sampler:
             for name, points in contacts.points.items()
         }
         self.loop = settings.structure().loop(problem)
-        self._trail = Trail()
+        self.past = PastIterates()
+        self._solution: Reference | Answer | None = None
         self._sampled = Sampled(problem, settings, self.loop, self.columns)
         kind = {"plane": DrawnMesh, "helices": DrawnRope}.get(settings.kind, DrawnRods)
         self.drawn: DrawnRods | DrawnMesh | DrawnRope = kind(
@@ -114,16 +117,19 @@ class Sampler:
         )
 
     def keep(self, iterate: Iterate) -> None:
-        """Store an iterate for extras that show past ones."""
-        self._trail.keep(iterate)
+        """Store an iterate of the search, or the answer as the solution."""
+        if not isinstance(iterate, Answer):
+            self.past.keep(iterate)
+        elif self._solution is None:
+            self._solution = iterate
 
     def complete(self, reference: Reference | None) -> None:
         """Add the reference and the closed forms to the run."""
-        self._trail.reference = reference
         curves = self.settings.exact(self.problem, reference)
         exact = tuple(self._at_columns(curve) for curve in curves)
         known: dict[str, Any] = {"exact": exact, "is_compared": True}
         if reference is not None:
+            self._solution = reference
             known["reference"] = self._contact(reference, self.problem.contacts)
             known["reference_loop"] = self._loop(reference)
             known["reference_moved"] = self.drawn.deformed(reference).largest
@@ -210,7 +216,9 @@ class Sampler:
         known = {name: partial(extra, self._sampled) for name, extra in EXTRAS.items()}
         known |= self.drawn.extras
         known["pieces"] = self._cutter.pieces
-        known["zigzag"] = partial(zigzag, self._sampled, self._trail)
+        known["zigzag"] = partial(
+            zigzag, self._sampled, self.past.few() or [iterate], self._solution
+        )
         return {
             name: known[name](iterate, needs) for name in needs.extras & known.keys()
         }

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -16,18 +17,11 @@ from app.worker.extras import Sampled
 from app.worker.geometry import MOST_POINTS
 from solver.arrays import Array, Indices, sparse_factor
 from solver.discrete import Problem
-from solver.latin import Answer, Iterate
+from solver.latin import Iterate
 from solver.laws import Contact
 from solver.reference.assembly import assembled_stiffness, jumps
 from solver.reference.solution import Reference
 
-LIMIT = 24_000_000
-"""Largest memory of past iterates, bytes."""
-FIRST = 16
-RECENT = 16
-MOST = 48
-"""Indices of the first and of the newest iterates, none of which is left out, and of
-all that are kept."""
 LARGEST = 20_000
 """Largest number of degrees of freedom for which the stiffness at a point is found: its
 factor takes a third of a second."""
@@ -36,37 +30,6 @@ HELD = 1e-12
 freedom."""
 STRAIGHT = 1e-6
 """Distance up to which a point lies on the line along k, over its largest force."""
-
-
-class Trail:
-    """Past iterates of a run: first, newest, and some in between.
-
-    `reference` is the incremental solver's solution, None until it is found, and
-    `answer` the certified iterate, None as long as there is none.
-    """
-
-    def __init__(self) -> None:
-        self.iterates: list[Iterate] = []
-        self.reference: Reference | None = None
-        self.answer: Answer | None = None
-
-    def keep(self, iterate: Iterate) -> None:
-        """Store an iterate, without cached properties."""
-        if isinstance(iterate, Answer):
-            self.answer = iterate
-            return
-        self.iterates.append(replace(iterate, bases=(), k_state=None))
-        size = 4 * iterate.outgoing.nbytes
-        if len(self.iterates) > MOST:
-            self.iterates[FIRST:-RECENT] = self.iterates[FIRST:-RECENT:2]
-        del self.iterates[: -max(LIMIT // size, 1)]
-
-    @property
-    def solution(self) -> Reference | Iterate | None:
-        """The solution, when it is known."""
-        if self.reference is not None:
-            return self.reference
-        return self.answer
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +120,11 @@ class ContactPoint:
 
 
 def zigzag(
-    sampled: Sampled, trail: Trail, iterate: Iterate, needs: Needs
+    sampled: Sampled,
+    past: Sequence[Iterate],
+    solution: Reference | Iterate | None,
+    iterate: Iterate,
+    needs: Needs,
 ) -> dict[str, Any]:
     """The path of a point of the selected interface, and the fields of all its points.
 
@@ -176,11 +143,11 @@ def zigzag(
     columns = sampled.columns
     name = needs.interface
     law = problem.contacts[name]
-    past = trail.iterates or [iterate]
-    point = ContactPoint(problem, name, _chosen(trail, iterate, law, needs))
+    seen = _chosen(solution or iterate, law, needs)
+    point = ContactPoint(problem, name, seen)
     star = None
-    if trail.solution is not None:
-        contact = trail.solution.contact(name)
+    if solution is not None:
+        contact = solution.contact(name)
         length = law.by_point(law.weights)[point.number]
         force = contact.tangential_force[point.number] / length
         star = floats(np.stack([contact.slip[point.number], force])[:, columns])
@@ -198,7 +165,9 @@ def zigzag(
     return shown | _way(point, past, columns) | point.law_at(iterate, columns)
 
 
-def _way(point: ContactPoint, past: list[Iterate], columns: Indices) -> dict[str, Any]:
+def _way(
+    point: ContactPoint, past: Sequence[Iterate], columns: Indices
+) -> dict[str, Any]:
     """The stages of past iterates at a point, and which steps are along k."""
     begins = past[0].number == 1 and not past[0].local_incoming.any()
     numbers = [0] * begins + [iterate.number for iterate in past]
@@ -240,7 +209,7 @@ def _fields(
     )
 
 
-def _chosen(trail: Trail, iterate: Iterate, law: Contact, needs: Needs) -> int:
+def _chosen(shown: Reference | Iterate, law: Contact, needs: Needs) -> int:
     """Index of the selected point, or of one in the middle of what slips.
 
     It is taken at the instant at which friction takes most energy; where nothing slips
@@ -248,7 +217,7 @@ def _chosen(trail: Trail, iterate: Iterate, law: Contact, needs: Needs) -> int:
     """
     if needs.position is not None:
         return int(np.abs(law.positions - needs.position).argmin())
-    contact = (trail.solution or iterate).contact(needs.interface)
+    contact = shown.contact(needs.interface)
     force = np.abs(contact.tangential_force)
     slips = np.abs(contact.status) == 1
     # The two pairs of a point on a cut do not move as one before the end.

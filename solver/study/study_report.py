@@ -53,10 +53,13 @@ SMALLEST = 2e-9
 def conditions(settings: Settings, repeats: int) -> list[str]:
     """Sentences on the conditions of the measurement."""
     changes = [f"{name} = {value}" for name, value in settings.changed().items()]
+    passes = "one pass"
+    if repeats > 1:
+        passes = f"medians of {repeats} passes"
     return [
         f"Scene: {settings.scene} ({', '.join(changes) or 'defaults'}).",
         f"Machine: {machine()}.",
-        f"All methods in one process, in turns; medians of {repeats} passes.",
+        f"All methods in one process, in turns; {passes}.",
         *BILLED,
     ]
 

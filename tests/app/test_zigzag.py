@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 from typing import Any
@@ -16,9 +17,9 @@ from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.views.colors import REFERENCE
 from app.views.zigzag import Zigzag
+from app.worker.past_iterates import ENDS, PastIterates
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
-from app.worker.zigzag import FIRST, MOST, RECENT, Trail
 from solver.latin import Answer
 
 PLAIN = {"acceleration": "none", "relaxation": 1.0}
@@ -171,17 +172,20 @@ def test_past_iterates_are_thinned_between_the_first_and_the_newest(
 ) -> None:
     iterate = run_of("bar", 3, elements=50).iterate
     assert iterate is not None
-    trail = Trail()
+    past = PastIterates()
     for number in range(1, 301):
-        object.__setattr__(iterate, "number", number)
-        trail.keep(iterate)
-    numbers = [kept.number for kept in trail.iterates]
-    assert numbers[:FIRST] == list(range(1, FIRST + 1))
-    assert numbers[-RECENT:] == list(range(301 - RECENT, 301))
-    assert len(numbers) <= MOST
-    monkeypatch.setattr("app.worker.zigzag.LIMIT", 12 * iterate.outgoing.nbytes)
-    trail.keep(iterate)
-    assert len(trail.iterates) == 3
+        past.keep(replace(iterate, number=number))
+        few = [each.number for each in past.few()]
+        assert len(few) <= 3 * ENDS
+        assert few[:ENDS] == list(range(1, number + 1))[:ENDS]
+        assert few[-ENDS:] == list(range(1, number + 1))[-ENDS:]
+    monkeypatch.setattr("app.worker.past_iterates.LIMIT", 12 * iterate.outgoing.nbytes)
+    past.keep(replace(iterate, number=301))
+    for number in range(302, 312):
+        past.keep(replace(iterate, number=number))
+    assert [each.number for each in past.all][::2] == [1, 311]
+    assert past.numbered(1) is past.all[0]
+    assert past.numbered(2) is None
 
 
 def test_after_the_local_stage_the_way_ends_on_the_law() -> None:
