@@ -222,7 +222,9 @@ def sliding_share(problem: Problem) -> float:
     """Estimate the largest share of one frictional interface that ever slides.
 
     The share is the load of one body over the friction that one interface can carry at
-    the same time, and lies between that of two points and 1. Where displacements are
+    the same time, and lies between that of two points and 1. Heat pushes as far forward
+    at one place as backward at another, so the load is the largest of all forces
+    together and of those along the body in either direction. Where displacements are
     prescribed the load is not known beforehand. On a rigid support all points may slide
     then. Bodies that rub on each other carry at most the force that the displacement
     makes of a rod, whose scaled stiffness is 1. Bodies on supports of their own count
@@ -234,6 +236,9 @@ def sliding_share(problem: Problem) -> float:
     first = next(iter(problem.contacts.values()))
     # Interfaces are alike, so the first one represents all.
     capacity = first.tangential.bound.sum(axis=0)
+    # Without friction at some instant all of an interface slides.
+    if not capacity.all():
+        return 1.0
     smallest = min(2.0 / len(first.positions), 1.0)
     load = np.zeros(problem.n_instants)
     for pulled in problem.prescribed_forces:
@@ -243,10 +248,12 @@ def sliding_share(problem: Problem) -> float:
             if first.is_on_support:
                 return 1.0
             load += moved.values.mean(axis=0)
+    pushed = np.zeros((problem.n_dofs, problem.n_instants))
     for part in problem.substructures:
         if part.body_force is not None:
-            load += part.body_force.sum(axis=0)
-    # Without friction at some instant all of an interface slides.
-    if not capacity.all():
-        return 1.0
-    return float(np.clip((np.abs(load) / capacity).max(), smallest, 1.0))
+            np.add.at(pushed, part.dofs, part.body_force)
+    forward = np.maximum(pushed, 0.0).sum(axis=0)
+    backward = np.maximum(-pushed, 0.0).sum(axis=0)
+    together = np.abs(load + forward - backward)
+    load = np.maximum(together, np.maximum(forward, backward))
+    return float(np.clip((load / capacity).max(), smallest, 1.0))
