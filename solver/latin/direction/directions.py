@@ -56,12 +56,17 @@ class SearchDirection(ABC):
         return read_only(self.scale * self.rule(problem))
 
     def begin(
-        self, problem: Problem, start: Checkpoint | None, waves: float = math.inf
+        self,
+        problem: Problem,
+        start: Checkpoint | None,
+        waves: float = math.inf,
+        *,
+        multiscale: bool = True,
     ) -> KState:
         """Search direction at the start of a run, or of a resumed run.
 
         `waves` is the length of the longest waves that a start from a coarser mesh
-        leaves wrong, m.
+        leaves wrong, m, and `multiscale` says whether macro forces are balanced.
         """
         return KState(self.of(problem))
 
@@ -100,21 +105,23 @@ class Auto(SearchDirection):
         return automatic(problem)
 
     def begin(
-        self, problem: Problem, start: Checkpoint | None, waves: float = math.inf
+        self,
+        problem: Problem,
+        start: Checkpoint | None,
+        waves: float = math.inf,
+        *,
+        multiscale: bool = True,
     ) -> KState:
         """Search direction at the start, which may change between bodies only.
 
         In a run from the fields of another or from a coarser mesh, which are near, k
         stays.
         """
-        if waves < math.inf:
-            k = self.scale * automatic(problem, waves=waves)
-            return KState(read_only(k))
+        k = self.scale * automatic(problem, waves=waves, multiscale=multiscale)
         laws = problem.contacts.laws.values()
         has_bodies = any(law.opens and not law.is_on_support for law in laws)
-        if start is None and has_bodies:
-            return KState(self.of(problem), is_final=False)
-        return KState(self.of(problem))
+        is_near = start is not None or waves < math.inf
+        return KState(read_only(k), is_final=is_near or not has_bodies)
 
     def follow(self, iterate: Iterate, state: KState) -> KState:
         """Search direction after an iteration, final after the third.
@@ -143,7 +150,11 @@ def _slips_between_bodies(iterate: Iterate) -> bool:
 
 
 def automatic(
-    problem: Problem, *, sticks: bool = False, waves: float = math.inf
+    problem: Problem,
+    *,
+    sticks: bool = False,
+    waves: float = math.inf,
+    multiscale: bool = True,
 ) -> Array:
     """Search direction k of every row by the automatic rule.
 
@@ -163,6 +174,9 @@ def automatic(
         bodies that do.
     waves
         Length of the longest waves that are wrong, m.
+    multiscale
+        Whether macro forces are balanced in every iteration. Long waves that are wrong
+        have to cross the cuts without them, and need a smaller k there.
 
     Returns
     -------
@@ -173,9 +187,10 @@ def automatic(
         return problem.direction
     stiffness_beside = laws[0].stiffness_beside
     k = problem.direction * stiffness_beside.elsewhere
-    for first, second in problem.cuts:
-        k[first] *= stiffness_beside.on_cuts
-        k[second] *= stiffness_beside.on_cuts
+    if multiscale or waves < math.inf:
+        for first, second in problem.cuts:
+            k[first] *= stiffness_beside.on_cuts
+            k[second] *= stiffness_beside.on_cuts
     parts = _sliding_parts(problem)
     for law in laws:
         law.stiffness_beside.choose(law, k, parts, waves)
