@@ -107,7 +107,9 @@ class Iteration:
             waves = math.inf
             if coarse is not None:
                 waves = wrong_waves(coarse)
-            self._k_state = latin.direction.begin(problem, start, waves)
+            self._k_state = latin.direction.begin(
+                problem, start, waves, multiscale=latin.multiscale
+            )
         self.k = self._k_state.k
         blocks = Blocks(problem.n_rows, problem.n_instants, latin.threads)
         self.linear = _linear_stage(problem, self.k, latin, blocks)

@@ -89,9 +89,10 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
         start = Nested(
             lambda: (_during(coarser, instants) for coarser in nested.coarser())
         )
+    k = latin.direction.begin(problem, None, multiscale=latin.multiscale).k
     method = replace(
         latin,
-        direction=_OfWhole(k=latin.direction.of(problem)),
+        direction=_OfWhole(k=k),
         start=start,
         stop=stop,
     )

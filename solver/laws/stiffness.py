@@ -74,7 +74,11 @@ class RodStiffness:
 
     From zero, 1 % of the friction force takes 14, 49 and 149 iterations on 10, 50 and
     200 elements of the bar on a sine. With the geometric mean of ES/s and ES/h it takes
-    17, 75 and more than 200 (measured).
+    17, 75 and more than 200. One k is too small for short waves and too large for long
+    ones on a fine mesh. From a tenth of k in the first ten iterations 200 elements take
+    101, but 10 elements 21, and a strand of 20 wires 183 instead of 129; with 0.3 k and
+    3 k in turns 107, and 0.1 k and 10 k in turns diverge. A smaller k of long waves in
+    the linear stage of an uncut bar takes 121 at best instead of 154 (measured).
 
     Attributes
     ----------
@@ -96,7 +100,8 @@ class RodStiffness:
     elsewhere: ClassVar[float] = 1.0
     on_cuts: ClassVar[float] = 10.0
     """1 % of friction force takes 12 to 16 iterations of a bar in 1 to 50 pieces, and
-    13 to 32 with 1 (measured)."""
+    13 to 32 with 1 (measured). From zero without macro forces, where this factor is
+    left out, 88 in 10 pieces, and more than 200 with it."""
 
     def choose(self, law: Pairs, k: Array, parts: float, waves: float) -> None:
         """Write k of interfaces into k of all rows, (n_rows,), scaled, in place.

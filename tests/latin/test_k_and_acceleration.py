@@ -82,6 +82,11 @@ def test_the_limit_is_the_same(change):
         ({"friction": 0.0}, 1.0),
         ({"support_displacement": 1e-3}, 1.0),
         ({"load": "ramp", "peak": 300.0, "body_force": 300.0}, 0.4),
+        ({"load": "ramp", "peak": 300.0, "body_force": -300.0}, 0.2),
+        # ES alpha times 100 K are 791.28 N.
+        ({"peak": 0.0, "temperature": 100.0}, 791.28 / 1500.0),
+        ({"peak": 0.0, "temperature": -100.0}, 791.28 / 1500.0),
+        ({"temperature": 100.0}, 0.6),
     ],
     ids=str,
 )

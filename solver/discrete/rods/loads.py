@@ -50,24 +50,29 @@ def sliding_length(rods: Rods) -> float:
     That is sqrt(3) |u| / |u'| at the instant of the largest load: the whole length of a
     rod that is pulled at its end, and 0.28 of a wavelength where u is a wave. The whole
     length, too, where nothing moves, nothing but friction holds the rod, or a mesh of
-    one or two elements tells nothing.
+    one or two elements tells nothing. Between two ends whose displacement is given at
+    most half the length: half a wave fits there, behind one such end a quarter.
     """
+    longest = rods.length
+    if all(end.is_prescribed for end in rods.ends.values()):
+        longest *= 0.5
     is_held = any(end.displacement is not None for end in rods.ends.values())
     if not is_held or rods.elements < FEWEST:
-        return rods.length
+        return longest
     try:
         moved = _motion_without_friction(rods)
     except LinAlgError:
         # A spring as soft as rounding holds no more than friction does.
-        return rods.length
+        return longest
     largest = float(np.abs(moved).max())
     if largest == 0.0:
-        return rods.length
+        return longest
     moved /= largest
     strain = np.diff(moved) * (rods.elements / rods.length)
     # A soft spring moves a rod as a whole.
     least = np.sqrt(3.0) * np.linalg.norm(moved) / rods.length
-    return rods.length * float(least / max(least, np.linalg.norm(strain)))
+    varying = rods.length * float(least / max(least, np.linalg.norm(strain)))
+    return min(varying, longest)
 
 
 def _motion_without_friction(rods: Rods) -> Array:

@@ -56,12 +56,17 @@ class SearchDirection(ABC):
         return read_only(self.scale * self.rule(problem))
 
     def begin(
-        self, problem: Problem, start: Checkpoint | None, waves: float = math.inf
+        self,
+        problem: Problem,
+        start: Checkpoint | None,
+        waves: float = math.inf,
+        *,
+        multiscale: bool = True,
     ) -> KState:
         """Search direction at the start of a run, or of a resumed run.
 
         `waves` is the length of the longest waves that a start from a coarser mesh
-        leaves wrong, m.
+        leaves wrong, m, and `multiscale` says whether macro forces are balanced.
         """
         return KState(self.of(problem))
 
@@ -100,21 +105,23 @@ class Auto(SearchDirection):
         return automatic(problem)
 
     def begin(
-        self, problem: Problem, start: Checkpoint | None, waves: float = math.inf
+        self,
+        problem: Problem,
+        start: Checkpoint | None,
+        waves: float = math.inf,
+        *,
+        multiscale: bool = True,
     ) -> KState:
         """Search direction at the start, which may change between bodies only.
 
         In a run from the fields of another or from a coarser mesh, which are near, k
         stays.
         """
-        if waves < math.inf:
-            k = self.scale * automatic(problem, waves=waves)
-            return KState(read_only(k))
+        k = self.scale * automatic(problem, waves=waves, multiscale=multiscale)
         laws = problem.contacts.laws.values()
         has_bodies = any(law.opens and not law.is_on_support for law in laws)
-        if start is None and has_bodies:
-            return KState(self.of(problem), is_final=False)
-        return KState(self.of(problem))
+        is_near = start is not None or waves < math.inf
+        return KState(read_only(k), is_final=is_near or not has_bodies)
 
     def follow(self, iterate: Iterate, state: KState) -> KState:
         """Search direction after an iteration, final after the third.
@@ -143,7 +150,11 @@ def _slips_between_bodies(iterate: Iterate) -> bool:
 
 
 def automatic(
-    problem: Problem, *, sticks: bool = False, waves: float = math.inf
+    problem: Problem,
+    *,
+    sticks: bool = False,
+    waves: float = math.inf,
+    multiscale: bool = True,
 ) -> Array:
     """Search direction k of every row by the automatic rule.
 
@@ -163,6 +174,9 @@ def automatic(
         bodies that do.
     waves
         Length of the longest waves that are wrong, m.
+    multiscale
+        Whether macro forces are balanced in every iteration. Long waves that are wrong
+        have to cross the cuts without them, and need a smaller k there.
 
     Returns
     -------
@@ -173,9 +187,10 @@ def automatic(
         return problem.direction
     stiffness_beside = laws[0].stiffness_beside
     k = problem.direction * stiffness_beside.elsewhere
-    for first, second in problem.cuts:
-        k[first] *= stiffness_beside.on_cuts
-        k[second] *= stiffness_beside.on_cuts
+    if multiscale or waves < math.inf:
+        for first, second in problem.cuts:
+            k[first] *= stiffness_beside.on_cuts
+            k[second] *= stiffness_beside.on_cuts
     parts = _sliding_parts(problem)
     for law in laws:
         law.stiffness_beside.choose(law, k, parts, waves)
@@ -222,7 +237,9 @@ def sliding_share(problem: Problem) -> float:
     """Estimate the largest share of one frictional interface that ever slides.
 
     The share is the load of one body over the friction that one interface can carry at
-    the same time, and lies between that of two points and 1. Where displacements are
+    the same time, and lies between that of two points and 1. Heat pushes as far forward
+    at one place as backward at another, so the load is the largest of all forces
+    together and of those along the body in either direction. Where displacements are
     prescribed the load is not known beforehand. On a rigid support all points may slide
     then. Bodies that rub on each other carry at most the force that the displacement
     makes of a rod, whose scaled stiffness is 1. Bodies on supports of their own count
@@ -234,6 +251,9 @@ def sliding_share(problem: Problem) -> float:
     first = next(iter(problem.contacts.values()))
     # Interfaces are alike, so the first one represents all.
     capacity = first.tangential.bound.sum(axis=0)
+    # Without friction at some instant all of an interface slides.
+    if not capacity.all():
+        return 1.0
     smallest = min(2.0 / len(first.positions), 1.0)
     load = np.zeros(problem.n_instants)
     for pulled in problem.prescribed_forces:
@@ -243,10 +263,12 @@ def sliding_share(problem: Problem) -> float:
             if first.is_on_support:
                 return 1.0
             load += moved.values.mean(axis=0)
+    pushed = np.zeros((problem.n_dofs, problem.n_instants))
     for part in problem.substructures:
         if part.body_force is not None:
-            load += part.body_force.sum(axis=0)
-    # Without friction at some instant all of an interface slides.
-    if not capacity.all():
-        return 1.0
-    return float(np.clip((np.abs(load) / capacity).max(), smallest, 1.0))
+            np.add.at(pushed, part.dofs, part.body_force)
+    forward = np.maximum(pushed, 0.0).sum(axis=0)
+    backward = np.maximum(-pushed, 0.0).sum(axis=0)
+    together = np.abs(load + forward - backward)
+    load = np.maximum(together, np.maximum(forward, backward))
+    return float(np.clip((load / capacity).max(), smallest, 1.0))
