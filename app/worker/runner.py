@@ -256,7 +256,10 @@ class Runner:
         if not isinstance(iterate, Answer):
             self._keep(iterate)
         self.sampler.keep(iterate)
-        self.history.append(record(iterate, decision, self._distance))
+        self._decision = decision
+        # Indicators of an answer without a search wait until its picture is seen.
+        seen = record(iterate, decision, self._distance, watch=not self._is_near)
+        self.history.append(seen)
         if self.status is not None and decision.certificate is not None:
             self.answer = LastAnswer.of(self._order, decision.certificate.solution)
             if self.is_dragged:
@@ -293,9 +296,4 @@ class Runner:
         self._is_compared = self.has_news = True
         self.sampler.complete(reference)
         self._distance = distance
-        if distance is not None:
-            self.history[-1] = replace(
-                self.history[-1],
-                error_displacement=distance.of_displacement(self.iterate),
-                error_force=distance.of_friction_force(self.iterate),
-            )
+        self.history[-1] = record(self.iterate, self._decision, distance)
