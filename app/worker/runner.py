@@ -199,7 +199,14 @@ class Runner:
     def frame(self, needs: Needs) -> Frame:
         """Frame of the newest iterate."""
         self.has_news = False
-        frame = self.sampler.frame(self.iterate, self.history, self.status, needs)
+        frame = self.sampler.frame(
+            self.iterate,
+            self.history,
+            self.status,
+            needs,
+            # Those on a run that follows a slider wait until its picture is seen.
+            with_remarks=self._is_compared or not self.is_dragged,
+        )
         return replace(frame, is_followed=self._is_near)
 
     def earlier(self, iteration: int, needs: Needs) -> Frame | None:
