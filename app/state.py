@@ -152,7 +152,6 @@ class PageState(param.Parameterized):
         self._sent: Needs | None = None
         self._awaits_local = False
         self._last_run: Frame | None = None
-        self._remarks: tuple[str, ...] = ()
         self.param.watch(lambda event: self.param.update(prediction=None), "lesson")
         needed = ["selection", "needs", "readings", "brought"]
         self.param.watch(lambda *events: self.send_needs(is_news=False), needed)
@@ -409,11 +408,10 @@ class PageState(param.Parameterized):
         if frame.run.number != self.number:
             self.send(Ready())
             return
-        # Those on a run that follows a slider come with its reference.
-        if self.is_dragged and not frame.run.is_compared:
-            frame = replace(frame, remarks=self._remarks)
-        self._remarks = frame.remarks
         last = self.history.newest
+        # Remarks on a run that follows a slider come with its reference.
+        if self.is_dragged and last is not None and not frame.run.is_compared:
+            frame = replace(frame, remarks=last.remarks)
         # The first frame of a run: the run before becomes the one to compare with.
         if last is None or last.run.number != self.number:
             if self.pinned is not self.history:

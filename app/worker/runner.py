@@ -265,8 +265,9 @@ class Runner:
         self.sampler.keep(iterate)
         self._decision = decision
         # Indicators of an answer without a search wait until its picture is seen.
-        seen = record(iterate, decision, self._distance, watch=not self._is_near)
-        self.history.append(seen)
+        self.history.append(
+            record(iterate, decision, self._distance, watch=not self._is_near)
+        )
         if self.status is not None and decision.certificate is not None:
             self.answer = LastAnswer.of(self._order, decision.certificate.solution)
             if self.is_dragged:
