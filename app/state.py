@@ -409,6 +409,9 @@ class PageState(param.Parameterized):
             self.send(Ready())
             return
         last = self.history.newest
+        # Remarks on a run that follows a slider come with its reference.
+        if self.is_dragged and last is not None and not frame.run.is_compared:
+            frame = replace(frame, remarks=last.remarks)
         # The first frame of a run: the run before becomes the one to compare with.
         if last is None or last.run.number != self.number:
             if self.pinned is not self.history:

@@ -110,11 +110,12 @@ def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
     Fields that do not change with time have a single column; so has the result if none
     of them changes.
     """
-    shapes = [field.shape[1:] for field in fields]
-    columns = np.broadcast_shapes(*shapes)
-    return np.concatenate(
-        [np.broadcast_to(field, (len(field), *columns)) for field in fields]
-    )
+    shapes = {field.shape[1:] for field in fields}
+    # Of many interfaces mostly all fields have one shape.
+    if len(shapes) > 1:
+        columns = np.broadcast_shapes(*shapes)
+        fields = [np.broadcast_to(field, (len(field), *columns)) for field in fields]
+    return np.concatenate(fields)
 
 
 def largest_size(*fields: Array) -> float:

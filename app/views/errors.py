@@ -86,6 +86,9 @@ class Convergence(View):
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show errors and indicators of all iterations so far."""
         newest = self._newest(frame)
+        # An answer without a search has errors once it is compared.
+        if newest.is_followed and self.state.is_fleeting:
+            return
         history = _searched(newest)
         for column in CURVES:
             self.draw(column, *_curve(history, "iteration", column))

@@ -194,7 +194,14 @@ class Runner:
     def frame(self, needs: Needs) -> Frame:
         """Frame of the newest iterate."""
         self.has_news = False
-        frame = self.sampler.frame(self.iterate, self.history, self.status, needs)
+        frame = self.sampler.frame(
+            self.iterate,
+            self.history,
+            self.status,
+            needs,
+            # Those on a run that follows a slider wait until its picture is seen.
+            with_remarks=self._is_compared or not self.is_dragged,
+        )
         return replace(frame, is_followed=self._is_near)
 
     def earlier(self, iteration: int, needs: Needs) -> Frame | None:
@@ -239,7 +246,11 @@ class Runner:
             return
         self.iterate = iterate
         self.sampler.keep(iterate)
-        self.history.append(record(iterate, decision, self._distance))
+        self._decision = decision
+        # Indicators of an answer without a search wait until its picture is seen.
+        self.history.append(
+            record(iterate, decision, self._distance, watch=not self._is_near)
+        )
         if self.status is not None and decision.certificate is not None:
             self.answer = LastAnswer.of(self._order, decision.certificate.solution)
             if self.is_dragged:
@@ -276,9 +287,4 @@ class Runner:
         self._is_compared = self.has_news = True
         self.sampler.complete(reference)
         self._distance = distance
-        if distance is not None:
-            self.history[-1] = replace(
-                self.history[-1],
-                error_displacement=distance.of_displacement(self.iterate),
-                error_force=distance.of_friction_force(self.iterate),
-            )
+        self.history[-1] = record(self.iterate, self._decision, distance)

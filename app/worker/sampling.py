@@ -151,6 +151,8 @@ class Sampler:
         history: Sequence[Record],
         status: Status | None,
         needs: Needs,
+        *,
+        with_remarks: bool = True,
     ) -> Frame:
         """Frame of an iterate, with the extras that views in sight need."""
         needs = replace(needs, interface=self.run.interface(needs.interface))
@@ -163,7 +165,7 @@ class Sampler:
             residual = iterate.residual
             is_beside = iterate.is_beside
         remarks: tuple[str, ...] = ()
-        if status:
+        if status and with_remarks:
             remarks = tuple(remarks_on(self.settings, iterate))
         return Frame(
             run=self.run,

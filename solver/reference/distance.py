@@ -62,8 +62,9 @@ class Distance:
 
     def __init__(self, reference: Fields, problem: Problem, load: Array) -> None:
         """Prepare the distance, with a load of shape (n, n_instants), N."""
+        rules = rules_of(problem)
         self._weights = problem.time_weights
-        self._determinate = determinate_forces(problem)
+        self._determinate = _determinate_forces(problem, rules)
         self._held = held_instants(problem, reference.contact_force)
         dofs = np.unique(problem.row_dofs)
         self._dofs: Indices = dofs[~problem.is_turn[dofs]]
@@ -74,7 +75,7 @@ class Distance:
         # As far as the load would stretch the structure.
         stretched = load_size * scales.displacement / scales.force
         self._displacement_size = self._norm(self._displacement) or stretched or 1.0
-        self._set_sizes(rules_of(problem), load_size, scales.force)
+        self._set_sizes(rules, load_size, scales.force)
 
     def _set_sizes(self, rules: Rules, load_size: float, unit: float) -> None:
         """Set the norms of all contact forces, and of pressure and friction apart.
@@ -216,11 +217,15 @@ def determinate_forces(problem: Problem) -> Flags:
     determinate, nor is the friction that it carries; friction of a known bound is while
     it slips. Forces that can balance each other (`solver.reference.glued`) are not.
     """
+    return _determinate_forces(problem, rules_of(problem))
+
+
+def _determinate_forces(problem: Problem, rules: Rules) -> Flags:
+    """Flags of determinate contact forces, as `determinate_forces`, by the rules."""
     dofs, displacement = problem.prescribed
     free = np.ones(problem.n_dofs)
     free[dofs] = 0.0
     all_jumps = jumps(problem)
-    rules = rules_of(problem)
     moves = abs(all_jumps) @ free > 0.0
     slips = np.zeros((len(moves), problem.n_instants), dtype=bool)
     # Mostly what is prescribed is held: such a jump never slips.

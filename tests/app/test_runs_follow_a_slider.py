@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import sys
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -14,9 +15,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_scenes import SMALL
 
-from app.messages import Needs, Start
+from app.frame import Frame
+from app.messages import Needs, NewFrame, Start
 from app.state import SEARCH, PageState, answer, default_settings
 from app.status import status_line
+from app.views.errors import Convergence
 from app.worker.references import LastAnswer, ReferenceCache
 from app.worker.runner import Runner
 from solver.latin import Answer
@@ -109,6 +112,41 @@ def test_a_small_move_is_answered_without_an_iteration(scene: str) -> None:
     state.newest = state.frame = runner.frame(Needs())
     words = re.sub("<[^>]*>", "", status_line(state))
     assert "answer: 0 iterations · certified" in words
+
+
+def test_what_is_said_of_an_answer_that_follows_comes_with_its_reference() -> None:
+    """Its picture waits for none of it, and what was said before stays until then."""
+    soft = of("bar", young=1e9)
+    moved = soft.with_change("friction", 1.02 * soft.friction)
+    runner = dragged(moved, states_after(dragged(soft), moved))
+    first = runner.frame(Needs())
+    assert first.is_followed
+    assert not first.remarks
+    assert math.isnan(first.last("indicator"))
+    while runner.rest() is not None:
+        runner.advance()
+    second = runner.frame(Needs())
+    assert "this model does not hold" in second.remarks[0]
+    for name in ("indicator", "behaviour", "estimated_error", "error_force"):
+        assert second.last(name) < EQUAL, name
+
+    state = PageState(soft)
+    view = Convergence(state)
+
+    def show(frame: Frame) -> list[float]:
+        state.drag("friction", moved.friction)
+        run = replace(frame.run, number=state.number)
+        state.take(NewFrame(replace(frame, run=run)))
+        view.figure  # noqa: B018  # it is made when it is first asked for
+        view.update(state.frame, state.selection, state.ghost)
+        return list(view.sources["indicator"].data["y"])
+
+    assert show(first) == []
+    assert not state.frame.remarks
+    drawn = show(second)
+    assert len(drawn) == 1
+    assert show(first) == drawn
+    assert state.frame.remarks == second.remarks
 
 
 @pytest.mark.parametrize("scene", list(MOVED))

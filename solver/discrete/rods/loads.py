@@ -83,7 +83,8 @@ def _motion_without_friction(rods: Rods) -> Array:
     stiffness = np.full(rods.elements, rods.stiffness * rods.elements / rods.length)
     if rods.section is not None:
         stiffness *= rods.section
-    diagonal = np.append(stiffness, 0.0) + np.insert(stiffness, 0, 0.0)
+    before = np.append(0.0, stiffness)
+    diagonal = np.append(stiffness, 0.0) + before
     force = _force_along(rods, stiffness)
     held = np.zeros_like(force)
     for node, beside, end in ((0, 1, rods.left), (-1, -2, rods.right)):
@@ -98,7 +99,7 @@ def _motion_without_friction(rods: Rods) -> Array:
     first = int(rods.left.is_prescribed)
     free = slice(first, len(force) - int(rods.right.is_prescribed))
     largest = int(np.argmax(np.abs(force[free]).max(axis=0)))
-    bands = np.stack([np.insert(-stiffness, 0, 0.0), diagonal])[:, free]
+    bands = np.stack([-before, diagonal])[:, free]
     moved: Array = held[:, largest]
     moved[free] = solveh_banded(bands, force[free, largest])
     return moved

@@ -43,10 +43,10 @@ def moves_rigidly(problem: Problem) -> bool:
     which touch more than two others, seldom find a balance as rigid bodies where
     friction alone holds them, and take minutes to seek it (measured).
     """
-    if problem.user_laws or not problem.contacts or not _moves_far(problem):
-        return False
     inside = problem.inside
-    if inside is None or problem.rigid_motions is None:
+    if inside is None or problem.user_laws or not problem.contacts:
+        return False
+    if not _moves_far(problem) or problem.rigid_motions is None:
         return False
     if len(problem.contacts) >= len(np.unique(inside.body_of_dofs)):
         return False
