@@ -132,12 +132,13 @@ def test_the_loop_comes_with_the_frame_and_its_distance() -> None:
     )
 
 
-def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
+def test_the_tab_shows_a_fit_with_its_scene_and_its_loop_alone_and_opens_it() -> None:
     stiff = {"young": 210_123_456_789.0}
     state = PageState(bar(friction=0.3, **stiff), tab="Fit")
     tab = FitTab(state)
     assert tab.start_button.disabled
-    state.brought = loop_of_a_run(bar(friction=0.37, **stiff))
+    loop = loop_of_a_run(bar(friction=0.37, **stiff))
+    state.brought = loop
     assert tab.start_button.disabled
     tab.chosen.value = ["friction"]
     assert not tab.start_button.disabled
@@ -151,26 +152,6 @@ def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
     assert "standard error" in tab.page.object, tab.progress.object
     # Named as its owner does, and without digits of rounding.
     assert "less than 0.001 % from made.csv" in tab.page.object
-    tab.use()
-    assert state.tab == "Live"
-    assert state.settings.friction == 0.37
-    # What was not fitted has all its digits.
-    assert state.settings.young == stiff["young"]
-    state.param.update(tab="Fit", brought=None)
-    assert tab.start_button.disabled
-    assert "standard error" in tab.page.object
-    tab.end()
-
-
-def test_a_report_of_a_fit_is_there_with_its_scene_and_its_loop_alone() -> None:
-    state = PageState(bar(), tab="Fit")
-    tab = FitTab(state)
-    state.brought = loop_of_a_run(bar())
-    tab.chosen.value = ["friction"]
-    tab.start()
-    while tab.job is not None:
-        time.sleep(0.1)
-        tab.look()
     assert tab.use_button.visible
     fitted = state.settings
     state.settings = default_settings("rope")
@@ -179,9 +160,18 @@ def test_a_report_of_a_fit_is_there_with_its_scene_and_its_loop_alone() -> None:
     assert "made.csv is of another scene: it has m and N" in tab.words
     state.settings = fitted
     assert "standard error" in tab.page.object
-    state.brought = loop_of_a_run(bar(friction=0.37))
+    state.brought = loop_of_a_run(bar(friction=0.4))
     assert not tab.page.object
     assert not tab.files.objects
+    state.brought = loop
+    tab.use()
+    assert state.tab == "Live"
+    assert state.settings.friction == 0.37
+    # What was not fitted has all its digits.
+    assert state.settings.young == stiff["young"]
+    state.param.update(tab="Fit", brought=None)
+    assert tab.start_button.disabled
+    assert "standard error" in tab.page.object
     tab.end()
 
 
@@ -196,7 +186,9 @@ def test_progress_has_titles_of_settings_and_sentences_keep_their_words() -> Non
     assert tab.said(sentence) == sentence
 
 
-def test_a_loop_is_fitted_whatever_the_name_of_its_file() -> None:
+def test_a_fit_of_any_name_is_cancelled_or_refused_in_words_and_leaves_nothing() -> (
+    None
+):
     state = PageState(bar(), tab="Fit")
     tab = FitTab(state)
     # It begins as an option does, and has more bytes than a system takes.
@@ -204,23 +196,11 @@ def test_a_loop_is_fitted_whatever_the_name_of_its_file() -> None:
     state.brought = replace(loop_of_a_run(bar(load="random")), source=name)
     tab.chosen.value = ["friction"]
     tab.start()
-    while tab.job is not None:
-        time.sleep(0.1)
-        tab.look()
-    assert "ΔΔΔ.csv: " in tab.progress.object
-    assert "goes one way 3 times" in tab.progress.object
-
-
-def test_a_fit_is_cancelled_or_refused_in_words_and_leaves_nothing() -> None:
-    state = PageState(bar(), tab="Fit")
-    tab = FitTab(state)
-    state.brought = loop_of_a_run(bar(load="random"))
-    tab.chosen.value = ["friction"]
-    tab.start()
     folder = tab.job.folder
     while tab.job is not None:
         time.sleep(0.1)
         tab.look()
+    assert "ΔΔΔ.csv: " in tab.progress.object
     assert "goes one way 3 times" in tab.progress.object
     assert not folder.exists()
     state.change(elements=400, substructures=1, instants=400)

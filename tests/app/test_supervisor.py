@@ -114,11 +114,22 @@ def test_an_interrupt_while_workers_are_prepared_is_for_the_server_alone(
     assert (done.returncode, done.stdout, done.stderr) == (0, b"pressed\n", b"")
 
 
-STOPS_A_WORKER = """
+MANY_AND_A_STOPPED_ONE = """
 import multiprocessing, os, signal, threading
 from app.messages import Start
 from app.state import default_settings
-from app.worker.process import Worker
+from app.worker.process import Worker, niceness
+
+first, *more = workers = [Worker(lambda worker, report: None, n) for n in range(3)]
+pids = [process.pid for process in multiprocessing.active_children()]
+print([niceness(pid) - niceness() for pid in pids])
+first.end()
+late = Worker(lambda worker, report: None, 2)
+workers = [*more, late, Worker(lambda worker, report: None, 40)]
+pids = [process.pid for process in multiprocessing.active_children()]
+print([niceness(pid) for pid in pids])
+for worker in workers:
+    worker.end()
 
 reports = threading.Event()
 worker = Worker(lambda worker, report: reports.set())
@@ -135,46 +146,28 @@ print(multiprocessing.active_children(), threading.active_count())
 """
 
 
-def test_a_worker_that_takes_no_orders_keeps_nobody_waiting_and_leaves_nothing() -> (
-    None
-):
+@pytest.fixture(scope="module")
+def lines() -> list[str]:
+    """Lines that a program with workers prints."""
     done = subprocess.run(
-        [sys.executable, "-c", STOPS_A_WORKER],
+        [sys.executable, "-c", MANY_AND_A_STOPPED_ONE],
         cwd=Path(__file__).resolve().parents[2],
         capture_output=True,
         check=False,
+        text=True,
         timeout=PATIENCE,
     )
-    assert (done.returncode, done.stdout, done.stderr) == (0, b"[] 1\n", b"")
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout.splitlines()
 
 
-GIVES_WAY = """
-import multiprocessing, threading
-from app.worker.process import Worker, niceness
-
-first, *more = workers = [Worker(lambda worker, report: None, n) for n in range(3)]
-pids = [process.pid for process in multiprocessing.active_children()]
-print([niceness(pid) - niceness() for pid in pids])
-first.end()
-late = Worker(lambda worker, report: None, 2)
-workers = [*more, late, Worker(lambda worker, report: None, 40)]
-pids = [process.pid for process in multiprocessing.active_children()]
-print([niceness(pid) for pid in pids])
-for worker in workers:
-    worker.end()
-"""
+def test_all_workers_give_the_same_way_to_a_server_of_many_pages(
+    lines: list[str],
+) -> None:
+    assert lines[:2] == ["[7, 7, 7]", "[19, 19, 19, 19]"]
 
 
-def test_all_workers_give_the_same_way_to_a_server_of_many_pages() -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", GIVES_WAY],
-        cwd=Path(__file__).resolve().parents[2],
-        capture_output=True,
-        check=False,
-        timeout=PATIENCE,
-    )
-    assert (done.returncode, done.stdout, done.stderr) == (
-        0,
-        b"[7, 7, 7]\n[19, 19, 19, 19]\n",
-        b"",
-    )
+def test_a_worker_that_takes_no_orders_keeps_nobody_waiting_and_leaves_nothing(
+    lines: list[str],
+) -> None:
+    assert lines[2:] == ["[] 1"]

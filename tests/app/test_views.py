@@ -81,11 +81,19 @@ def test_a_view_of_an_extra_has_none_of_the_scene_before() -> None:
         assert not any(map(len, source.data.values()))
 
 
-@pytest.mark.parametrize("kind", VIEWS)
-def test_a_view_shows_each_frame_of_all_that_it_applies_to(kind: type[View]) -> None:
+@pytest.mark.parametrize("kind", [Scene, Timeline, *VIEWS])
+def test_a_view_shows_each_frame_of_all_that_it_applies_to_with_the_same_models(
+    kind: type[View],
+) -> None:
+    """A colour bar had a new mapper while its figure came to another card.
+
+    The browser draws with the models of a figure that it knows before new ones among
+    them are complete, where both come in a message.
+    """
     # One view goes from scene to scene, as on the page.
     view = kind(PageState(default_settings("bar")))
     assert view.figure is not None
+    models = view.layout.references()
     cases = [case for case in (*SMALL, *MORE) if kind.applies(settings_of(case))]
     assert cases
     for case in cases:
@@ -106,22 +114,7 @@ def test_a_view_shows_each_frame_of_all_that_it_applies_to(kind: type[View]) -> 
             assert has_wide_axes(view), case
             assert fits_a_logarithmic_axis(view), case
             assert frame is first or draws_something(view), case
-
-
-@pytest.mark.parametrize("kind", [Scene, Timeline, *VIEWS])
-def test_a_figure_keeps_its_models_with_each_frame(kind: type[View]) -> None:
-    """A colour bar had a new mapper while its figure came to another card.
-
-    The browser draws with the models of a figure that it knows before new ones among
-    them are complete, where both come in a message.
-    """
-    view = kind(PageState(default_settings("bar")))
-    models = view.layout.references()
-    for case in (*SMALL, *MORE):
-        if kind.applies(settings_of(case)):
-            for frame in frames_of(case):
-                shown(view, frame)
-                assert view.layout.references() == models, case
+            assert view.layout.references() == models, case
 
 
 def has_wide_axes(view: View) -> bool:

@@ -10,13 +10,13 @@ from typing import Any
 
 import pytest
 
+from app.lessons.catalogue import LESSONS
 from app.views.catalogue import CARDS
 from solver.commands.cli import main
 from solver.scenes import discretise
 from solver.settings.values import SettingError
 from solver.study.lessons import Lesson, check, lesson_from_file
 
-FOLDER = Path(__file__).resolve().parents[2] / "app" / "lessons"
 PARTS: dict[str, str] = {
     "title": '"A title"',
     "order": "1",
@@ -181,7 +181,6 @@ def test_the_command_refuses_what_is_no_lesson_and_runs_nothing(
     assert said.count("\n") == 1
 
 
-LESSONS = {path.stem: lesson_from_file(path) for path in sorted(FOLDER.glob("*.toml"))}
 CHECKPOINTS = []
 for title, taught in LESSONS.items():
     CHECKPOINTS += [

@@ -35,6 +35,7 @@ BAR = {**SMALL, "load": "cycle", "peak": 900.0}
 SPRUNG = {**BAR, "friction_law": "compliant"}
 FEW = {"elements": 10, "instants": 13, "substructures": 2}
 """Sizes of a bar of which a fit takes hundreds of runs."""
+SMALLEST = {"elements": 4, "instants": 9, "substructures": 1}
 SCENES = {**SMALL_SCENES, "bar": BAR}
 
 
@@ -277,9 +278,7 @@ def test_undetermined_settings_stay_at_their_start() -> None:
 
 def test_a_sum_that_is_known_alone_is_not_taken_for_its_parts() -> None:
     law = {"friction_law": "general", "tangential_stiffness": 1e8, "cohesion": 600.0}
-    settings = scene_settings("bar").checked(
-        BAR | law | {"elements": 4, "instants": 9, "substructures": 1}
-    )
+    settings = scene_settings("bar").checked(BAR | law | SMALLEST | {"friction": 0.35})
     found = fit(settings, made({"friction": 0.37}, settings), ["friction", "cohesion"])
     assert np.isinf(found.errors).all()
     assert found.nearest.values @ [5000.0, 1.0] == pytest.approx(
