@@ -139,6 +139,7 @@ class Runner:
         self._before = before
         self._is_near = False
         self._iterates: Iterator[tuple[Iterate, Decision]] | None = None
+        self._decision: Decision | None = None
         self._references = references
         self._interrupted = interrupted
         self._halted = halted

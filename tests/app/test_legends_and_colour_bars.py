@@ -6,6 +6,7 @@ from pictures import frame_of, shown, small
 
 from app.frame import Selection
 from app.state import PageState, default_settings
+from app.views.bases import Spectra
 from app.views.errors import Convergence, ErrorTime
 from app.views.inside import Stress
 from app.views.loops import HysteresisLoop
@@ -88,3 +89,11 @@ def test_a_colour_bar_has_the_limits_of_the_colours(
     assert bar.color_mapper.low == view.colors.low
     assert bar.color_mapper.high == view.colors.high
     assert bar.title
+    assert bar.visible
+
+
+@pytest.mark.parametrize("kind", [Stress, WireSection, Spectra])
+def test_there_is_no_colour_bar_before_there_are_values(kind: type[View]) -> None:
+    view = kind(PageState(default_settings("rope")))
+    (bar,) = view.figure.select(ColorBar)
+    assert not bar.visible
