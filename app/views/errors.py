@@ -88,6 +88,7 @@ class Convergence(View):
         newest = self._newest(frame)
         # An answer without a search has errors once it is compared.
         if newest.is_followed and self.state.is_fleeting:
+            self.clear()
             return
         history = _searched(newest)
         for column in CURVES:
