@@ -278,6 +278,16 @@ def drag(
     page.mouse.move(box["x"] + end * box["width"], y, steps=6)
 
 
+def close_controls(page: Page) -> None:
+    """Close the controls of a phone; the picture is back where it was without them.
+
+    The server hears of it after the browser: until then the picture stands above what
+    is no longer there.
+    """
+    button(page, "Close drawer").click()
+    expect(page.locator(".with-sheet")).to_have_count(0)
+
+
 def close_dialog(page: Page) -> None:
     """Close what has opened over the page."""
     # Where its content is new, the focus is on the page until MUI looks after it, some

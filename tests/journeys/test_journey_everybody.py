@@ -13,6 +13,7 @@ from pages import (
     PHONE,
     Desk,
     button,
+    close_controls,
     close_dialog,
     comes,
     enter,
@@ -85,7 +86,8 @@ def test_what_a_foolish_address_has_is_said_on_its_page_and_nothing_of_it_runs(
     button(page, "Open drawer").click()
     enter(page, "Peak load", "1000", over="900")
     expect(line).not_to_contain_text("From the address: ")
-    button(page, "Close drawer").click()
+    expect(figures(page)).to_contain_text("Force −1 kN")
+    close_controls(page)
 
 
 def swipe(page: Page, start: Place, end: Place) -> None:
@@ -156,7 +158,7 @@ def test_on_a_phone_in_the_dark_nothing_is_wider_than_the_screen_and_the_scene_i
     moved = slider(page, "Peak load").locator("..").bounding_box()
     assert moved is not None
     assert moved["y"] < box["y"] - 50.0
-    button(page, "Close drawer").click()
+    close_controls(page)
     # All buttons of the header are in sight, or in its list.
     for name in ("Lessons", "More", "Toggle theme"):
         expect(button(page, name)).to_be_in_viewport(ratio=1.0)
@@ -179,7 +181,7 @@ def test_on_a_phone_a_high_picture_stands_with_its_keys_above_the_controls(
     expect(field(page, "Movement of the abutment")).to_be_visible()
     parts = [figure(page, 0), page.locator(".sidebar").first]
     comes(page, ABOVE, [part.element_handle() for part in parts])
-    button(page, "Close drawer").click()
+    close_controls(page)
 
 
 def test_on_a_phone_the_picture_stays_in_sight_above_the_text_of_a_case(
