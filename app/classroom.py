@@ -207,14 +207,15 @@ class ClassMember(param.Parameterized):
     def enter(self, address: str) -> bool:
         """Follow the class of an address, or lead it with its key.
 
-        Return whether the page follows a class. Where there is no such class, `message`
+        Return whether the page follows a class. Where there is no such class, a refusal
         says so, and all stays as it is.
         """
         code, _, key = address.partition(".")
         room = find(code)
         if room is None:
             if code:
-                self.message = no_class(code)
+                refusals = [self.state.refusal, no_class(code)]
+                self.state.refusal = " ".join(filter(None, refusals))
             self.state.room = self._address()
         # In constant time: a key is not found letter by letter.
         elif secrets.compare_digest(room.key.encode(), key.encode()):

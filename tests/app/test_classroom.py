@@ -275,7 +275,7 @@ def test_a_key_that_is_wrong_does_not_lead(leader: Seat) -> None:
 
 def test_a_code_that_there_is_not_is_told_and_the_page_runs() -> None:
     seat = Seat("bar", "XXXX5")
-    assert "There is no class XXXX5" in seat.member.message
+    assert "There is no class XXXX5" in seat.state.refusal
     assert seat.worker.is_there
 
 
