@@ -33,15 +33,8 @@ from solver.settings.values import SettingError
 from solver.study.compared_runs import ComparedRun, ComparedRuns
 from solver.study.fitted_settings import fittable
 from solver.study.measured_loop import MeasuredLoop
-from solver.study.profile_likelihood import (
-    BROAD,
-    LIMIT,
-    SILENT,
-    WALK,
-    LikelihoodProfile,
-    LowerPlace,
-    Valley,
-)
+from solver.study.profile_likelihood import LIMIT, LikelihoodProfile
+from solver.study.valley import BROAD, SILENT, WALK, LowerPlace, Valley
 
 MOST = 4
 """Largest number of settings that are fitted at once."""
@@ -172,7 +165,7 @@ def fit(
     valley, profiles = _explored(runs)
     is_known = np.array([profile.is_known for profile in profiles])
     blind = _blind(valley, is_known)
-    z = _near_start(valley, blind)
+    z = _near_start(valley, blind, profiles)
     lower, upper = _margins(valley, profiles)
     return Fit(
         settings=settings.replace(**runs.scales.changes(z)),
@@ -209,7 +202,7 @@ def _explored(runs: ComparedRuns) -> tuple[Valley, list[LikelihoodProfile]]:
         valley = Valley(runs, z, seeks=rest > 0)
         try:
             valley.walk()
-            return valley, [valley.profile(along) for along in settings]
+            return valley, valley.profiles(settings)
         except LowerPlace as lower:
             z = runs.solve(lower.z, LOOSE * settings)
     raise AssertionError("the last round seeks no lower place")
@@ -233,17 +226,24 @@ def _blind(valley: Valley, is_known: Flags) -> Array:
     return np.asarray(directions[distances > LIMIT / 2.0])
 
 
-def _near_start(valley: Valley, blind: Array) -> Array:
+def _near_start(
+    valley: Valley, blind: Array, profiles: list[LikelihoodProfile]
+) -> Array:
     """Point z, (p,), on the floor of a valley, nearest to the start z = 0.
 
-    The place moves along the directions `blind`, (n, p), in which the valley continues.
+    The place moves along the directions `blind`, (n, p), in which the valley continues,
+    and in no setting out of the margin that its profile gives.
     """
     runs = valley.runs
+    below, above = np.array([profile.ends() for profile in profiles]).T
     # The pull is as strong as the loop is, so that it decides where the loop does not.
     pull = max(float(np.linalg.norm(valley.jacobian, 2)), 1.0) * blind
     for _ in range(PULLS):
         z = runs.solve(valley.z, pull)
-        if not len(blind) or runs.misfit(z) - valley.minimum <= valley.doubt / 4.0:
+        is_near = runs.misfit(z) - valley.minimum <= valley.doubt / 4.0
+        moves = z - valley.z
+        is_within = ((-below <= moves) & (moves <= above)).all()
+        if not len(blind) or (is_near and is_within):
             return z
         pull = WEAKER * pull
     return valley.z
