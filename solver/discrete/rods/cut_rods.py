@@ -19,8 +19,13 @@ from solver.discrete.rods.loads import (
     force_of_strains,
     sliding_length,
 )
-from solver.discrete.rods.pieces import Piece, RodPieces, content_without_friction
-from solver.discrete.rods.rod_rows import NO_ROW, RodRows
+from solver.discrete.rods.pieces import (
+    NO_ROW,
+    Piece,
+    RodPieces,
+    RodRows,
+    content_without_friction,
+)
 from solver.discrete.rods.rods import Rods
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity, Substructure, tributary
