@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Indices, linked
-from solver.cache import CACHE, content_of
 from solver.discrete.contacts import Contacts
 from solver.laws import Contact, Interface, SlipFactor
 from solver.laws.interface import IncrementalForm
@@ -56,8 +55,7 @@ def reason_against_reference(
         )
     cuts = [form.glued for form in forms if form.glued is not None]
     sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *cuts], axis=1)
-    key = "numbering", content_of(*numbering, sides)
-    if not CACHE.get(key, lambda: _are_glued_as_numbered(sides, numbering)):
+    if not _are_glued_as_numbered(sides, numbering):
         return (
             "Rows of one degree of freedom are not glued, or glued rows have two, "
             "so that no matrix of the whole structure says what holds: number them "

@@ -179,8 +179,9 @@ class ShapePart:
     @cached_property
     def _basis(self) -> skfem.Basis:
         """Functions of the elements of a mesh."""
-        assert isinstance(self.body.shape, Mesh)
-        return quadratic_basis(self.body.shape, self.chosen)
+        mesh = self.body.shape
+        assert isinstance(mesh, Mesh)
+        return _basis(mesh, self.chosen, _exact(mesh.elements.shape[1]))
 
     @cached_property
     def _elastic(self) -> Array:
@@ -193,8 +194,7 @@ class ShapePart:
         """Volume that belongs to each node, shape (n_nodes,), m^3."""
         shape = self.body.shape
         if isinstance(shape, Mesh):
-            key = "volumes", shape.content, content_of(self.chosen)
-            return CACHE.get(key, lambda: mesh_volumes(self._basis)[self.nodes])
+            return mesh_volumes(self._basis)[self.nodes]
         return shape.volumes(self.chosen)[self.nodes]
 
     def forces(
@@ -319,11 +319,6 @@ def _exact(corners: int) -> tuple[Array, Array]:
         quadrature = get_quadrature(skfem.ElementQuad2.refdom, 4)
     points, weights = quadrature
     return points, weights
-
-
-def quadratic_basis(mesh: Mesh, elements: Indices) -> skfem.Basis:
-    """Quadratic functions of some elements of a mesh, at points of integration."""
-    return _basis(mesh, elements, _exact(mesh.elements.shape[1]))
 
 
 def mesh_stiffness(

@@ -72,7 +72,7 @@ class CutBodies:
         for body in bodies:
             key = body.cut_key
             if key not in shapes:
-                shapes[key] = CutShape.of(body)
+                shapes[key] = CutShape(body.shape, body.substructures, body.parts)
             self.cuts.append(shapes[key])
         self.frames = NodeFrames(
             structure.rotations,

@@ -242,27 +242,21 @@ class Ring:
         _, face = self.faces
         directions = np.stack([np.cos(self.angles), -np.sin(self.angles)], axis=1)
         normals = np.repeat(directions[:, None], len(left), axis=1)
-        names = self.joint_names
-        last = self.voussoirs
         # The left block stands with its right side inwards.
-        begins = Joint(names[0], 1, left, 0, face[::-1], normals[0], friction=friction)
-        joints = [begins]
-        for number in range(1, last):
-            normal = normals[number]
-            inner = Joint(
-                names[number],
+        above = [left] * self.voussoirs + [face]
+        below = [face[::-1]] + [right] * self.voussoirs
+        return [
+            Joint(
+                name,
                 number + 1,
-                left,
+                above[number],
                 number,
-                right,
-                normal,
+                below[number],
+                normals[number],
                 friction=friction,
             )
-            joints.append(inner)
-        ends = Joint(
-            names[last], last + 1, face, last, right, normals[last], friction=friction
-        )
-        return [*joints, ends]
+            for number, name in enumerate(self.joint_names)
+        ]
 
     def abutments(self, moved: Array) -> list[Held]:
         """Feet of both abutments: the left one at rest, the right one moved.
