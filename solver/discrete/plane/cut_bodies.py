@@ -23,7 +23,7 @@ from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Load
 from solver.discrete.plane.body_parts import ShapePart
-from solver.discrete.plane.body_traces import TracesOfParts
+from solver.discrete.plane.body_traces import traces_of
 from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
 from solver.discrete.plane.lattice import Lattice
@@ -57,7 +57,7 @@ class CutBodies:
     shape_parts
         All parts in the axes of their shapes.
     parts
-        Parts, body by body; rows are by the names of `TracesOfParts`.
+        Parts, body by body; rows are by the names of `traces_of`.
     """
 
     def __init__(self, structure: Bodies) -> None:
@@ -93,9 +93,9 @@ class CutBodies:
         self._body_of_parts = np.repeat(np.arange(len(bodies)), counts).tolist()
         of_bodies = self._of_shapes()
         self.shape_parts = list(chain.from_iterable(of_bodies))
-        self._traces = TracesOfParts(
+        self._traces = traces_of(
             structure, self.cuts, self.frames, self.pieces, of_bodies
-        ).all()
+        )
         self._operators = SharedOperators(self._own_frames)
         self.parts = list(self._parts())
 
