@@ -1,4 +1,4 @@
-"""Interfaces with friction: their groups, the order of their stacked fields, and these."""
+"""Interfaces with friction: groups, the order of their stacked fields, and fields."""
 
 from __future__ import annotations
 

@@ -15,9 +15,8 @@ from solver.discrete.condensed_part import (
     Operator,
     PartForce,
 )
-from solver.discrete.scales import Scales
 from solver.discrete.schur_complement import SchurComplement
-from solver.discrete.substructure import Substructure
+from solver.discrete.substructure import Scales, Substructure
 
 HELD = 1e-9
 """Smallest singular value of a rigid motion that prescribed displacements hinder, over

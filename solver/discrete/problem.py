@@ -40,8 +40,7 @@ from solver.discrete.driven_friction import DrivenFriction, driven_contacts
 from solver.discrete.drives import Drive
 from solver.discrete.inside import Inside
 from solver.discrete.no_reference import Numbering, reason_against_reference
-from solver.discrete.scales import Scales
-from solver.discrete.substructure import Substructure
+from solver.discrete.substructure import Scales, Substructure
 from solver.laws import Contact, Interface
 from solver.laws.interface import Glued, IncrementalForm, PrescribedRows
 

@@ -1,4 +1,4 @@
-"""Substructures, and the elastic operators that equal substructures share."""
+"""Substructures, the operators that equal ones share, and the units of both."""
 
 from __future__ import annotations
 
@@ -9,15 +9,23 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.checks import (
-    ALIKE,
-    InstanceOf,
-    Kind,
-    Numbers,
-    check,
-    check_value,
-)
+from solver.checks import ALIKE, POSITIVE, InstanceOf, Kind, Numbers, check, check_value
 from solver.refusal import RefusedError, Words
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Units of scaled displacement, m, force, N, and time, s.
+
+    With them the results of a method do not depend on the units of the input.
+    """
+
+    displacement: float
+    force: float
+    time: float
+
+    def __post_init__(self) -> None:
+        check(self, displacement=POSITIVE, force=POSITIVE, time=POSITIVE)
 
 
 @dataclass(frozen=True)

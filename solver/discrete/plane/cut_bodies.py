@@ -28,7 +28,7 @@ from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
 from solver.discrete.plane.lattice import Lattice
 from solver.discrete.plane.shared_operators import PartNodes, SharedOperators
-from solver.discrete.scales import Scales
+from solver.discrete.substructure import Scales
 from solver.refusal import Words
 
 FEW = 8

@@ -14,7 +14,7 @@ from solver.discrete.elements import legendre_basis
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.joint import Joint, along_joints
 from solver.discrete.plane.joint_pieces import JOINT_SIDES
-from solver.discrete.scales import Scales
+from solver.discrete.substructure import Scales
 from solver.laws import (
     BodyStiffness,
     Component,

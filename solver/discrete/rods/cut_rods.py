@@ -27,8 +27,7 @@ from solver.discrete.rods.pieces import (
     content_without_friction,
 )
 from solver.discrete.rods.rods import Rods
-from solver.discrete.scales import Scales
-from solver.discrete.substructure import Elasticity, Substructure, tributary
+from solver.discrete.substructure import Elasticity, Scales, Substructure, tributary
 from solver.laws import Contact, Dirichlet, Interface, Neumann, Perfect, RodStiffness
 
 DEGREES = 2

@@ -19,8 +19,7 @@ from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.plane.rectangles.stack_joints import StackJoints
 from solver.discrete.plane.rectangles.stack_sides import StackSides, is_moved
 from solver.discrete.problem import Problem
-from solver.discrete.scales import Scales
-from solver.discrete.substructure import substructure_sizes
+from solver.discrete.substructure import Scales, substructure_sizes
 from solver.refusal import RefusedError, Words
 
 
