@@ -60,16 +60,11 @@ class Piece(NamedTuple):
 
     def springs(self, rods: Rods) -> dict[int, End]:
         """Ends of the rod that springs hold, by their node in this piece."""
-        ends = {0: rods.left, rods.elements: rods.right}
-        return {
-            node - self.first: end
-            for node, end in ends.items()
-            if self._is_held(node, end)
-        }
-
-    def _is_held(self, node: int, end: End) -> bool:
-        """Check whether a node of the piece is an end of the rod on a spring."""
-        return end.is_on_spring and self.first <= node <= self.first + self.size
+        held = dict[int, End]()
+        for node, end in ((0, rods.left), (rods.elements, rods.right)):
+            if end.is_on_spring and self.first <= node <= self.first + self.size:
+                held[node - self.first] = end
+        return held
 
 
 class RodPieces:

@@ -37,7 +37,6 @@ from solver.discrete.plane.rectangles.sides import (
 )
 from solver.discrete.plane.rectangles.stack_drawn import (
     act_of_ground,
-    act_of_weight,
     acts_on_sides,
     holds_of,
 )
@@ -49,7 +48,7 @@ from solver.discrete.plane.rectangles.stack_loops import (
     loop_on_ground,
 )
 from solver.discrete.problem import Problem
-from solver.discrete.structure import Axes, Description, Loop
+from solver.discrete.structure import Axes, Description, Loop, act_of_weight
 from solver.laws import FrictionLaw
 
 SIDES = "left", "right", "top", "bottom"
