@@ -16,8 +16,7 @@ from solver.discrete.plane.body import Body, NodeSpring
 from solver.discrete.plane.lattice import Lattice
 from solver.discrete.plane.rectangles.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.plane.rectangles.stack import Stack
-from solver.discrete.plane.rectangles.stack_joints import StackJoints
-from solver.discrete.plane.rectangles.stack_sides import StackSides, is_moved
+from solver.discrete.plane.rectangles.stack_boundary import StackBoundary
 from solver.discrete.problem import Problem
 from solver.discrete.substructure import Scales, substructure_sizes
 from solver.refusal import RefusedError, Words
@@ -28,8 +27,7 @@ def bodies_of(stack: Stack) -> Bodies:
     shapes = _shapes_of(stack)
     of_size = cache(partial(_ends_of, stack))
     ends = [of_size(brick.columns, brick.rows) for brick in stack.rectangles]
-    joints = StackJoints.of(stack, shapes)
-    sides = StackSides(stack, shapes, joints.lines, ends)
+    boundary = StackBoundary(stack, shapes, ends)
     springs = []
     if stack.spring is not None:
         foot = int(shapes[0].grid[0, -1])
@@ -40,9 +38,9 @@ def bodies_of(stack: Stack) -> Bodies:
         )
     return Bodies(
         bodies=_bodies_of(stack, shapes, ends),
-        joints=joints.all(),
-        held=sides.held(),
-        loads=sides.loads(),
+        joints=boundary.joints(),
+        held=boundary.held(),
+        loads=boundary.loads(),
         instants=stack.instants,
         duration=stack.duration,
         state=stack.state,
@@ -141,7 +139,11 @@ def problem_of(stack: Stack) -> Problem:
     try:
         return problem_of_bodies(bodies_of(stack), partial(_rest, stack))
     except LooseBodiesError as error:
-        held = [name for name, side in stack.sides.items() if is_moved(side)]
+        held = [
+            name
+            for name, side in stack.sides.items()
+            if side.x.prescribed or side.y.prescribed
+        ]
         raise RefusedError(
             "Stack.sides",
             Words(f"with displacements of {' and '.join(held) or 'no side'}"),
