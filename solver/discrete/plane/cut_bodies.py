@@ -14,10 +14,8 @@ from solver.discrete.condensed_part import (
     CondensedPart,
     Operator,
     PartForce,
-    kept_by,
     numbered,
 )
-from solver.discrete.inside import HELD
 from solver.discrete.loose_bodies import LooseBodiesError
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.bodies import Bodies
@@ -220,27 +218,10 @@ class CutBodies:
         traces = list(self._traces[owner].values())
         try:
             return self._operators.of(self.shape_parts[owner], on_nodes, traces)
-        except np.linalg.LinAlgError:
-            if self._is_held(owner, on_nodes.nodes):
-                raise
-        body = self.structure.bodies[self._body_of_parts[owner]]
-        raise LooseBodiesError.of([body.name])
-
-    def _is_held(self, owner: int, nodes: Indices) -> bool:
-        """Check whether what a part keeps leaves it no rigid motion.
-
-        `nodes` are its nodes among those of all bodies, (n_nodes,).
-        """
-        traces = list(self._traces[owner].values())
-        own, axes = np.divmod(kept_by(traces), self.shape_parts[owner].n_axes)
-        is_turn = axes == 2
-        kept = nodes[own]
-        along = self.frames.frames[kept, np.where(is_turn, 0, axes)]
-        along[is_turn] = 0.0
-        x, y = (self.structure.nodes[kept] / self.length).T
-        turns = (x - x.mean()) * along[:, 1] - (y - y.mean()) * along[:, 0]
-        motions = np.column_stack([along, np.where(is_turn, 1.0, turns)])
-        return bool(np.linalg.matrix_rank(motions, tol=HELD) == N_AXES)
+        except np.linalg.LinAlgError as trouble:
+            # One piece of an elastic body is singular only where it can move.
+            body = self.structure.bodies[self._body_of_parts[owner]]
+            raise LooseBodiesError.of([body.name]) from trouble
 
     def _nodes_of_parts(self) -> list[PartNodes]:
         """Nodes, motions and forces of every part; equal parts are made together."""
