@@ -69,13 +69,6 @@ class ShapePart:
             own = body.shape.content, content_of(self.chosen)
         return own, material, self.units
 
-    @cached_property
-    def key(self) -> Hashable:
-        """Key of a part as `content`, but of a mesh only in one structure."""
-        if isinstance(self.body.shape, Lattice):
-            return self.content
-        return id(self)
-
     @property
     def n_axes(self) -> int:
         """Number of degrees of freedom of a node: x, y, and the turn of beams."""
