@@ -217,13 +217,8 @@ def kinds_of(bodies: Sequence[Body], joints: Sequence[Joint]) -> list[int]:
     known = dict[Hashable, int]()
     kinds = []
     for joint in joints:
-        # Mostly chains are equal because they are the very same.
-        same = [(of_bodies[body], id(nodes)) for body, nodes in joint.sides]
-        key = tuple(same)
-        if key not in known:
-            equal = [(of_bodies[body], nodes.tobytes()) for body, nodes in joint.sides]
-            known[key] = known.setdefault(tuple(equal), len(known))
-        kinds.append(known[key])
+        key = tuple([(of_bodies[body], nodes.tobytes()) for body, nodes in joint.sides])
+        kinds.append(known.setdefault(key, len(known)))
     return kinds
 
 
