@@ -198,9 +198,7 @@ def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
     The closed form holds for a block that slides much farther than it is deformed, and
     that no side holds.
     """
-    is_held = any(
-        side.x.prescribed or side.y.prescribed for side in body.sides.values()
-    )
+    is_held = any(side.is_moved for side in body.sides.values())
     if is_held or body.spring is None or not _is_coulombs(body):
         return
     slide = rigid_slide(body, body.spring)

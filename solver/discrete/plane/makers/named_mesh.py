@@ -76,7 +76,7 @@ class NamedMesh:
     ------
     RefusedError
         If there is no body. What bodies, contacts and sides must be to each other
-        `check_named` in `named_mesh_refused` tells.
+        `check_named` tells.
     """
 
     points: Array

@@ -81,6 +81,11 @@ class Side(NamedTuple):
         """Check whether both components are zero at all instants."""
         return self.x.is_zero and self.y.is_zero
 
+    @property
+    def is_moved(self) -> bool:
+        """Check whether a displacement of the side is prescribed."""
+        return self.x.prescribed or self.y.prescribed
+
 
 @dataclass(frozen=True, eq=False)
 class Support:

@@ -139,11 +139,7 @@ def problem_of(stack: Stack) -> Problem:
     try:
         return problem_of_bodies(bodies_of(stack), partial(_rest, stack))
     except LooseBodiesError as error:
-        held = [
-            name
-            for name, side in stack.sides.items()
-            if side.x.prescribed or side.y.prescribed
-        ]
+        held = [name for name, side in stack.sides.items() if side.is_moved]
         raise RefusedError(
             "Stack.sides",
             Words(f"with displacements of {' and '.join(held) or 'no side'}"),
