@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import singledispatch
 
+from solver.discrete.plane import bodies_problem
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held, Load, NodeSpring
@@ -11,6 +12,7 @@ from solver.discrete.plane.joint import Joint
 from solver.discrete.plane.lattice import Lattice
 from solver.discrete.plane.makers.band import Band
 from solver.discrete.plane.meshes import Mesh
+from solver.discrete.plane.rectangles import stack_problem
 from solver.discrete.plane.rectangles.sides import Side, SideComponent, Spring, Support
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
@@ -68,28 +70,6 @@ def discretise(structure: Structure) -> Problem:
 
 discretise.register(Rods, cut_rods.problem_of)
 discretise.register(Rope, cut_rope.problem_of)
-
-
-@discretise.register
-def _of_stack(structure: Stack) -> Problem:
-    """Discrete problem of rectangular bodies."""
-    from solver.discrete.plane.rectangles import stack_problem
-
-    return stack_problem.problem_of(structure)
-
-
-@discretise.register
-def _of_bodies(structure: Bodies) -> Problem:
-    """Discrete problem of bodies of any shape."""
-    # Other structures do not pay for the import of finite elements.
-    from solver.discrete.plane import bodies_problem
-
-    return bodies_problem.problem_of(structure)
-
-
-@discretise.register
-def _of_band(structure: Band) -> Problem:
-    """Discrete problem of a band on a guide."""
-    from solver.discrete.plane import bodies_problem
-
-    return bodies_problem.problem_of_band(structure)
+discretise.register(Stack, stack_problem.problem_of)
+discretise.register(Bodies, bodies_problem.problem_of)
+discretise.register(Band, bodies_problem.problem_of_band)

@@ -15,9 +15,8 @@ from solver.discrete.condensed_part import (
     Operator,
     PartForce,
 )
-from solver.discrete.scales import Scales
 from solver.discrete.schur_complement import SchurComplement
-from solver.discrete.substructure import Substructure, check_forces
+from solver.discrete.substructure import Scales, Substructure
 
 HELD = 1e-9
 """Smallest singular value of a rigid motion that prescribed displacements hinder, over
@@ -106,13 +105,11 @@ class Inside:
         found = dict[int, Substructure]()
         for operator, numbers in by_operator.items():
             forces = [self._parts[number].force for number in numbers]
-            equal = Substructure.of_equal(
-                operator.elasticity,
-                [self.dofs[number] for number in numbers],
-                [rows[number] for number in numbers],
-                _condensed_by(operator.condensed, forces),
-            )
-            found.update(zip(numbers, equal, strict=True))
+            on_kept = _condensed_by(operator.condensed, forces)
+            for number, force in zip(numbers, on_kept, strict=True):
+                found[number] = Substructure(
+                    operator.elasticity, self.dofs[number], rows[number], force
+                )
         return tuple(found[number] for number in range(len(operators)))
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
@@ -302,7 +299,6 @@ def _condensed_by(
             patterns = np.array([force.patterns for force in some])
             courses = np.array([force.courses for force in some])
             over_time = condensed.condense(patterns) @ courses
-            check_forces(over_time)
             found.update(zip([id(force) for force in some], over_time, strict=True))
     return [found.get(id(force)) for force in forces]
 

@@ -7,13 +7,12 @@ and the mean of the pairs of a point: they would leave out anything else.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Indices, linked
-from solver.cache import CACHE, content_of
 from solver.discrete.contacts import Contacts
 from solver.laws import Contact, Interface, SlipFactor
 from solver.laws.interface import IncrementalForm
@@ -23,17 +22,17 @@ _BY_ESTIMATE = "judge the run by its estimate alone"
 _OF_ONES_OWN = f"define its incremental_form, or {_BY_ESTIMATE}"
 
 
-class Numbering(NamedTuple):
-    """Degree of freedom, and substructure, of every boundary row, (n_rows,) both."""
-
-    dofs: Indices
-    parts: Indices
-
-
 def reason_against_reference(
-    interfaces: Mapping[str, Interface], contacts: Contacts, numbering: Numbering
+    interfaces: Mapping[str, Interface],
+    contacts: Contacts,
+    dofs: Indices,
+    parts: Indices,
 ) -> str:
-    """Reason why a problem has no incremental reference, with a remedy, or ""."""
+    """Reason why a problem has no incremental reference, with a remedy, or "".
+
+    `dofs` and `parts` are the degree of freedom, and the substructure, of every
+    boundary row, (n_rows,).
+    """
     forms = list[IncrementalForm]()
     for name, law in interfaces.items():
         form = law.incremental_form()
@@ -56,15 +55,14 @@ def reason_against_reference(
         )
     cuts = [form.glued for form in forms if form.glued is not None]
     sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *cuts], axis=1)
-    key = "numbering", content_of(*numbering, sides)
-    if not CACHE.get(key, lambda: _are_glued_as_numbered(sides, numbering)):
+    if not _are_glued_as_numbered(sides, dofs, parts):
         return (
             "Rows of one degree of freedom are not glued, or glued rows have two, "
             "so that no matrix of the whole structure says what holds: number them "
             f"alike, or {_BY_ESTIMATE}."
         )
     for name, contact in contacts.laws.items():
-        if not _has_points(contact, numbering.dofs):
+        if not _has_points(contact, dofs):
             return (
                 f'Pairs of one point of the interface "{name}" differ in their '
                 "degrees of freedom, gap or friction: give each a point of its "
@@ -78,21 +76,22 @@ def reason_against_reference(
     return ""
 
 
-def _are_glued_as_numbered(sides: Indices, numbering: Numbering) -> bool:
+def _are_glued_as_numbered(sides: Indices, dofs: Indices, parts: Indices) -> bool:
     """Check whether rows share a degree of freedom exactly if a law glues them.
 
-    `sides` are the glued rows of both sides, (2, n_glued).
+    `sides` are the glued rows of both sides, (2, n_glued), `dofs` and `parts` those of
+    all rows, (n_rows,).
     """
-    n_dofs = int(numbering.dofs.max(initial=0)) + 1
+    n_dofs = int(dofs.max(initial=0)) + 1
     # All rows of one substructure at one degree of freedom are one node.
-    keys = numbering.parts * n_dofs + numbering.dofs
+    keys = parts * n_dofs + dofs
     nodes, node_of_row = np.unique(keys, return_inverse=True)
     first, second = node_of_row[sides]
     n_glued, glued = linked(first, second, len(nodes))
     # Each group of glued nodes has one degree of freedom, and no other group has it.
-    dofs = nodes % n_dofs
-    n_pairs = len(np.unique(glued * n_dofs + dofs))
-    return bool(n_pairs == n_glued == len(np.unique(dofs)))
+    of_nodes = nodes % n_dofs
+    n_pairs = len(np.unique(glued * n_dofs + of_nodes))
+    return bool(n_pairs == n_glued == len(np.unique(of_nodes)))
 
 
 def _has_points(law: Contact, dofs: Indices) -> bool:

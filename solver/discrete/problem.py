@@ -39,9 +39,8 @@ from solver.discrete.contacts import Contacts
 from solver.discrete.driven_friction import DrivenFriction, driven_contacts
 from solver.discrete.drives import Drive
 from solver.discrete.inside import Inside
-from solver.discrete.no_reference import Numbering, reason_against_reference
-from solver.discrete.scales import Scales
-from solver.discrete.substructure import Substructure
+from solver.discrete.no_reference import reason_against_reference
+from solver.discrete.substructure import Scales, Substructure
 from solver.laws import Contact, Interface
 from solver.laws.interface import Glued, IncrementalForm, PrescribedRows
 
@@ -274,8 +273,9 @@ class Problem:
         owners = np.empty(self.n_rows, dtype=np.intp)
         for number, part in enumerate(self.substructures):
             owners[part.rows] = number
-        numbering = Numbering(self.row_dofs, owners)
-        return reason_against_reference(self.interfaces, self.contacts, numbering)
+        return reason_against_reference(
+            self.interfaces, self.contacts, self.row_dofs, owners
+        )
 
     @cached_property
     def friction(self) -> Contact:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from copy import copy
 from functools import cached_property, partial
-from typing import Protocol
 
 import numpy as np
 from scipy import sparse
@@ -33,27 +32,6 @@ response, which is made once in 200 ms, 15 and 110 (measured)."""
 DENSE = 10_000_000
 """Multiplications of a product up to which a few entries are multiplied as quickly
 among all zeros."""
-
-
-class Eliminated(Protocol):
-    """Eliminated degrees of freedom of a stiffness."""
-
-    @property
-    def nbytes(self) -> int:
-        """Memory of factor and response, B."""
-
-    def condense(self, force: Array) -> Array:
-        """Condense forces, (..., n_rest, n_columns), onto the kept degrees of freedom.
-
-        Negative, of shape (..., n_kept, n_columns).
-        """
-
-    def recover(self, kept: Array, force: Array | None) -> Array:
-        """Displacement of eliminated degrees of freedom, (n_rest, n_columns), scaled.
-
-        From that of the kept ones, (n_kept, n_columns), and forces inside, (n_rest,
-        n_columns), or None.
-        """
 
 
 class FewEliminated:
@@ -88,11 +66,18 @@ class FewEliminated:
         return self._factor_nbytes + self.response.nbytes
 
     def condense(self, force: Array) -> Array:
-        """Condensed forces with opposite sign, (..., n_kept, n_columns)."""
+        """Condense forces, (..., n_rest, n_columns), onto the kept degrees of freedom.
+
+        Negative, of shape (..., n_kept, n_columns).
+        """
         return np.asarray(self.response.T @ force)
 
     def recover(self, kept: Array, force: Array | None) -> Array:
-        """Displacement of eliminated degrees of freedom, (n_rest, n_columns)."""
+        """Displacement of eliminated degrees of freedom, (n_rest, n_columns), scaled.
+
+        From that of the kept ones, (n_kept, n_columns), and forces inside, (n_rest,
+        n_columns), or None.
+        """
         rest = -(self.response @ kept)
         if force is not None:
             rest += self._solve(force)
@@ -248,7 +233,7 @@ class SchurComplement:
         self._size = stiffness.shape[0]
         self._positions = positions
         self._rest = _others(self._size, positions)
-        self._eliminated: Eliminated | None = None
+        self._eliminated: FewEliminated | ManyEliminated | None = None
         many = None
         if not isinstance(stiffness, np.ndarray):
             many = ManyEliminated.of(stiffness, positions)

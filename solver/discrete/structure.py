@@ -94,6 +94,20 @@ class Act:
         return self.points
 
 
+def directed(force: Array) -> tuple[Array, Array]:
+    """Direction, (2, n_instants), and size, (n_instants,), of a force, (2, n_instants).
+
+    Where the force is zero the direction is, too.
+    """
+    size = np.hypot(*force)
+    return force / np.where(size > 0.0, size, 1.0), size
+
+
+def act_of_weight(weight: Array) -> Act:
+    """Arrow of the weight of all bodies, shape (2, n_instants), N, in their middle."""
+    return Act("body", "W", on_side("body", [0.5]), *directed(weight), "N")
+
+
 @dataclass(frozen=True, eq=False)
 class Hold:
     """A clamp, support or spring that holds bodies at a side.

@@ -200,7 +200,15 @@ class Interface(ABC):
         Values up to `noise` are rounding. By default the local stage finds violations:
         from W - F/k it gives W and F again if they obey the law, for any k, (n_rows,).
         """
-        return gaps_of_rule(self, displacement, force, noise, k)
+        # W - F/k is z, from which the local stage starts (paper, problem 2.1).
+        incoming = displacement - force / k[:, None]
+        local = displacement.copy(order="F")
+        self.rule(k, displacement.shape[1])(incoming, local, slice(None))
+        stiffness = k[self.rows, None]
+        # Rounding of W and of F both move the z from which the local stage starts.
+        rounding = noise * (1.0 + 1.0 / stiffness)
+        apart = beyond(local[self.rows] - displacement[self.rows], rounding)
+        return Gaps(displacement=squared(apart), force=squared(stiffness * apart))
 
     def during(self, instants: slice) -> Self:
         """The law restricted to a range of instants (initial sliders are not set).
@@ -226,39 +234,12 @@ OF_ONE_LAW = "incremental_form", "join", "gaps", "during", "macro_parts"
 """Methods that depend on the local stage, and may be wrong for that of a subclass."""
 
 
-def gaps_of_rule(
-    law: Interface, displacement: Array, force: Array, noise: float, k: Array
-) -> Gaps:
-    """Violations of a law by W and F, from its local stage; as `Interface.gaps`."""
-    # W - F/k is z, from which the local stage starts (paper, problem 2.1).
-    incoming = displacement - force / k[:, None]
-    local = displacement.copy(order="F")
-    law.rule(k, displacement.shape[1])(incoming, local, slice(None))
-    stiffness = k[law.rows, None]
-    # Rounding of W and of F both move the z from which the local stage starts.
-    rounding = noise * (1.0 + 1.0 / stiffness)
-    apart = beyond(local[law.rows] - displacement[law.rows], rounding)
-    return Gaps(displacement=squared(apart), force=squared(stiffness * apart))
-
-
 def joined(parts: Sequence[Any]) -> Any:
     """Concatenate laws of one kind, or their fields.
 
     Arrays, (n_pairs, ...), follow each other; other values are those of the first.
     """
-    first = parts[0]
-    kind = cast(Any, type(parts[0]))
-    if isinstance(first, np.ndarray):
-        return in_rows(parts)
-    if isinstance(first, Component):
-        sides = [joined(side) for side in zip(*parts, strict=True)]
-        return Component(*sides)
-    if not is_dataclass(first):
-        return first
-    values = dict[str, Any]()
-    for field in fields(first):
-        values[field.name] = joined([getattr(part, field.name) for part in parts])
-    return kind(**values)
+    return _with_arrays(parts, in_rows)
 
 
 def restricted(whole: Any, pairs: slice) -> Any:
@@ -266,18 +247,28 @@ def restricted(whole: Any, pairs: slice) -> Any:
 
     Arrays, (n_pairs, ...), are cut; other values stay as they are.
     """
-    if isinstance(whole, np.ndarray):
-        return whole[pairs]
-    if isinstance(whole, Component):
-        sides = [restricted(side, pairs) for side in whole]
+    return _with_arrays([whole], lambda arrays: arrays[0][pairs])
+
+
+def _with_arrays(parts: Sequence[Any], of_arrays: Callable[[Any], Any]) -> Any:
+    """A law whose arrays are a function of those of some laws of one kind.
+
+    `parts` are laws, or values of one of their fields; values that are no arrays are
+    those of the first.
+    """
+    first = parts[0]
+    if isinstance(first, np.ndarray):
+        return of_arrays(parts)
+    if isinstance(first, Component):
+        sides = [_with_arrays(side, of_arrays) for side in zip(*parts, strict=True)]
         return Component(*sides)
-    if not is_dataclass(whole):
-        return whole
-    kind = cast(Any, type(whole))
+    if not is_dataclass(first):
+        return first
     values = dict[str, Any]()
-    for field in fields(whole):
-        values[field.name] = restricted(getattr(whole, field.name), pairs)
-    return kind(**values)
+    for field in fields(first):
+        of_parts = [getattr(part, field.name) for part in parts]
+        values[field.name] = _with_arrays(of_parts, of_arrays)
+    return cast(Any, type(first))(**values)
 
 
 def beyond(field: Array, noise: float | Array) -> Array:

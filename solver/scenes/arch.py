@@ -20,7 +20,7 @@ from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.arch import VoussoirArch
 from solver.scenes.plane import RectangleSettings, ShapedSettings
 from solver.settings.definitions import BODY, LOAD, redefined
-from solver.settings.load_paths import HELD, PRESETS, Preset
+from solver.settings.load_paths import LATER, PRESETS, Preset
 from solver.settings.scene import Icon
 
 ROUND = 180.0
@@ -35,12 +35,6 @@ ALIKE = 1e-6
 """
 DOWN = 0.0, -1.0
 """Direction of a load that weighs."""
-LATER = replace(
-    PRESETS["ramp"],
-    description="0 for the first quarter of the interval, then rises evenly to the "
-    "value, which it has at the end",
-    begins=HELD,
-)
 PLACES: dict[str, Preset] = {"passes": LATER, **PRESETS}
 """Paths of the place of a load over time."""
 MOVES: dict[str, Preset] = {**PRESETS, "later": LATER}

@@ -20,7 +20,7 @@ from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.belt import Capstan
 from solver.scenes.plane import PlaneSettings, RectangleSettings
 from solver.settings.definitions import BODY, LOAD, redefined
-from solver.settings.load_paths import HELD, PULLS, Preset
+from solver.settings.load_paths import HELD, PULLS, Preset, lines
 from solver.settings.method import MethodSettings
 from solver.settings.scene import Icon
 
@@ -30,33 +30,24 @@ PLACES = 201
 """Points along the guide at which closed forms are drawn."""
 
 
-def _lines(description: str, phases: list[float], ordinates: list[float]) -> Preset:
-    """Preset of straight lines between phases and ordinates."""
-    points = np.array(phases), np.array(ordinates)
-    return Preset(description, lambda seed: points)
-
-
 PULLING: dict[str, Preset] = {
-    "half back": _lines(
+    "half back": Preset(
         "0 for the first quarter of the interval, rises evenly to the value in the "
         "next half, and falls back to half of it",
-        [0.0, HELD, 0.75, 1.0],
-        [0.0, 0.0, 1.0, 0.5],
+        lambda seed: (np.array([0.0, HELD, 0.75, 1.0]), np.array([0.0, 0.0, 1.0, 0.5])),
     ),
-    "jack": _lines(
+    "jack": lines(
         "rises evenly to the value in the first half of the interval, and stays there",
-        [0.0, 0.5, 1.0],
-        [0.0, 1.0, 1.0],
+        *(0.0, 1.0, 1.0),
     ),
     **PULLS,
 }
 """Paths of a pull over time."""
 ANCHORING: dict[str, Preset] = {
-    "anchored": _lines(
+    "anchored": lines(
         "0 for the first half of the interval, then rises evenly to the value, which "
         "it has at the end",
-        [0.0, 0.5, 1.0],
-        [0.0, 0.0, 1.0],
+        *(0.0, 0.0, 1.0),
     ),
     **PULLS,
 }

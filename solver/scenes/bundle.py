@@ -19,7 +19,7 @@ from solver.laws import FrictionLaw
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
 from solver.refusal import plain
-from solver.scenes.exact import hertz, is_coupled
+from solver.scenes.exact import contact_modulus, hertz, is_coupled
 from solver.scenes.plane import RectangleSettings, ShapedSettings
 from solver.settings.definitions import BODY, LOAD, redefined
 from solver.settings.scene import Icon
@@ -170,9 +170,7 @@ class BundleSettings(ShapedSettings):
     @property
     def modulus(self) -> float:
         """Modulus of contact of a wire pressed along a line, Pa."""
-        if self.plane == "stress":
-            return float(self.young)
-        return float(self.young / (1.0 - self.poisson**2))
+        return contact_modulus(self.young, self.poisson, self.plane)
 
     def hertz(self, force: float) -> HalfPlane:
         """Contact of two wires under a force, N for a metre."""

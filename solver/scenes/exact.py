@@ -115,6 +115,13 @@ def is_coupled(poisson: float, state: str) -> bool:
     return poisson < UNCOUPLED
 
 
+def contact_modulus(young: float, poisson: float, state: str) -> float:
+    """Modulus of a body that is pressed along a line, in the unit of E."""
+    if state == "stress":
+        return young
+    return young / (1.0 - poisson**2)
+
+
 def exact_parabola(
     body: Stack, radius: float, problem: Problem, solution: LoopFields
 ) -> Iterator[ExactCurve]:
@@ -130,9 +137,7 @@ def exact_parabola(
         return
     if largest <= 0.0 or not _is_coulombs(body):
         return
-    modulus = body.young
-    if body.state == "strain":
-        modulus = body.young / (1.0 - body.poisson**2)
+    modulus = contact_modulus(body.young, body.poisson, body.state)
     half_width = HalfPlane(largest, radius, modulus).half_width
     if half_width > SMALL * min(body.length, body.height):
         return
@@ -193,9 +198,7 @@ def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
     The closed form holds for a block that slides much farther than it is deformed, and
     that no side holds.
     """
-    is_held = any(
-        side.x.prescribed or side.y.prescribed for side in body.sides.values()
-    )
+    is_held = any(side.is_moved for side in body.sides.values())
     if is_held or body.spring is None or not _is_coulombs(body):
         return
     slide = rigid_slide(body, body.spring)

@@ -18,6 +18,17 @@ from solver.settings.scene import Settings
 
 def method_of(settings: Settings) -> Latin:
     """Make the method that checked settings describe."""
+    direction: Paper | Auto = Auto(settings.k_scale)
+    if settings.search_direction == "paper":
+        direction = Paper(settings.k_scale)
+    linear: Full | PGD = Full()
+    if settings.linear_stage == "pgd":
+        linear = PGD(
+            modes=settings.pgd_modes,
+            tolerance=settings.pgd_tolerance,
+            pairs=settings.pgd_pairs,
+            sharing=settings.pgd_sharing,
+        )
     acceleration = None
     if settings.acceleration == "anderson":
         acceleration = Anderson()
@@ -28,8 +39,8 @@ def method_of(settings: Settings) -> Latin:
     if settings.finish != "none":
         finish = StatusStep(at_once=settings.finish == "at-once")
     return Latin(
-        direction=_direction_of(settings),
-        linear=_linear_stage_of(settings),
+        direction=direction,
+        linear=linear,
         multiscale=settings.multiscale,
         relaxation=settings.relaxation,
         acceleration=acceleration,
@@ -37,23 +48,4 @@ def method_of(settings: Settings) -> Latin:
         finish=finish,
         stop=Stop(settings.accuracy, settings.tolerance, settings.max_iterations),
         threads=settings.threads,
-    )
-
-
-def _direction_of(settings: Settings) -> Paper | Auto:
-    """Search direction, with the factor on it."""
-    if settings.search_direction == "paper":
-        return Paper(settings.k_scale)
-    return Auto(settings.k_scale)
-
-
-def _linear_stage_of(settings: Settings) -> Full | PGD:
-    """Linear stage: full fields, or a sum of modes."""
-    if settings.linear_stage == "full":
-        return Full()
-    return PGD(
-        modes=settings.pgd_modes,
-        tolerance=settings.pgd_tolerance,
-        pairs=settings.pgd_pairs,
-        sharing=settings.pgd_sharing,
     )

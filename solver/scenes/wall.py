@@ -23,18 +23,11 @@ from solver.settings.definitions import (
     LOAD,
     redefined,
 )
-from solver.settings.load_paths import HELD, PRESETS, Preset
+from solver.settings.load_paths import LATER, PRESETS
 from solver.settings.profiles import UNSEEN
 from solver.settings.scene import Icon
 
-SETTLEMENTS = {
-    "delayed ramp": Preset(
-        "0 for a quarter of the interval, then rises evenly to the value",
-        lambda _seed: (np.array([0.0, 1.0]), np.array([0.0, 1.0])),
-        begins=HELD,
-    ),
-    **PRESETS,
-}
+SETTLEMENTS = {"delayed ramp": LATER, **PRESETS}
 """Presets of the settlement: by the first one the wall stands before it begins."""
 MOST_BRICKS = 1500
 """Largest number of bricks: with their joints they take some 2 GB."""

@@ -100,7 +100,7 @@ class Preset:
         return np.append(corners[corners < self.repeats], self.repeats + later)
 
 
-def _lines(
+def lines(
     description: str,
     *ordinates: float,
     begins: float = 0.0,
@@ -143,26 +143,26 @@ def _sine_squared(phase: Array) -> Array:
 
 QUARTERS = 0.0, 1.0, 0.0, -1.0, 0.0
 PRESETS: dict[str, Preset] = {
-    "ramp": _lines(
+    "ramp": lines(
         "rises evenly from 0 to the value, which it has at the end", 0.0, 1.0
     ),
-    "triangle": _lines(
+    "triangle": lines(
         "rises evenly to the value in the middle of the interval, and falls back to 0",
         *(0.0, 1.0, 0.0),
         repeats=0.0,
     ),
-    "cycle": _lines(
+    "cycle": lines(
         "goes to the value, to its opposite and to the value again, in straight lines",
         *(*QUARTERS, 1.0),
         repeats=0.2,
     ),
-    "sine": _lines(
+    "sine": lines(
         "a wave of a sine: to the value, to its opposite, and back to 0",
         *QUARTERS,
         repeats=0.0,
         wave=_sine,
     ),
-    "decaying": _lines(
+    "decaying": lines(
         "goes to and fro, to 1, -0.85, 0.7, -0.55, 0.4, -0.25 and 0.1 times the value, "
         "and to 0",
         *(0.0, *DECAY, 0.0),
@@ -178,7 +178,7 @@ PRESETS: dict[str, Preset] = {
         "there",
         lambda seed: (np.array([0.0, HELD, 1.0]), np.array([0.0, 1.0, 1.0])),
     ),
-    "delayed": _lines(
+    "delayed": lines(
         "0 for the first quarter of the interval, then a wave of a sine: to the value, "
         "to its opposite, and back to 0",
         *QUARTERS,
@@ -186,7 +186,7 @@ PRESETS: dict[str, Preset] = {
         repeats=HELD,
         wave=_sine,
     ),
-    "cycles": _lines(
+    "cycles": lines(
         "0 for the first quarter of the interval, then six times to the value, to its "
         "opposite and back to 0, in straight lines",
         *(0.0, *QUARTERS[1:] * CYCLES),
@@ -195,21 +195,28 @@ PRESETS: dict[str, Preset] = {
     ),
 }
 
+LATER = lines(
+    "0 for the first quarter of the interval, then rises evenly to the value, which it "
+    "has at the end",
+    *(0.0, 1.0),
+    begins=HELD,
+)
+"""A ramp before which a structure comes to stand."""
 PULLS: dict[str, Preset] = {
     **PRESETS,
-    "cycle": _lines(
+    "cycle": lines(
         "goes to the value, to 0, to the value, to 0 and to the value again, in "
         "straight lines",
         *(0.0, 1.0, 0.0, 1.0, 0.0, 1.0),
         repeats=0.2,
     ),
-    "sine": _lines(
+    "sine": lines(
         "two waves of a sine squared, from 0 to the value and back",
         *QUARTERS,
         repeats=0.0,
         wave=_sine_squared,
     ),
-    "decaying": _lines(
+    "decaying": lines(
         "goes up and down, to 1, 0.075, 0.85, 0.225, 0.7, 0.375 and 0.55 times the "
         "value, and to 0",
         *(0.0, *(0.5 + 0.5 * DECAY), 0.0),
@@ -220,7 +227,7 @@ PULLS: dict[str, Preset] = {
         "the value",
         _size_of_walk,
     ),
-    "delayed": _lines(
+    "delayed": lines(
         "0 for the first quarter of the interval, then two waves of a sine squared, "
         "from 0 to the value and back",
         *QUARTERS,
@@ -228,7 +235,7 @@ PULLS: dict[str, Preset] = {
         repeats=HELD,
         wave=_sine_squared,
     ),
-    "cycles": _lines(
+    "cycles": lines(
         "0 for the first quarter of the interval, then six times to the value and back "
         "to 0, in straight lines",
         *(0.0, *[1.0, 0.0] * CYCLES),
@@ -239,20 +246,20 @@ PULLS: dict[str, Preset] = {
 """Presets that never push, for what carries tension alone."""
 
 PRESSURES: dict[str, Preset] = {
-    "steady": _lines("the value from the beginning to the end", 1.0, 1.0),
-    "loosening": _lines(
+    "steady": lines("the value from the beginning to the end", 1.0, 1.0),
+    "loosening": lines(
         "the value for the first quarter of the interval, then falls evenly to a fifth "
         "of it, as of a bolt",
         *(1.0, LOOSE),
         begins=HELD,
     ),
-    "tightening": _lines(
+    "tightening": lines(
         "a fifth of the value for the first quarter of the interval, then rises evenly "
         "to the value",
         *(LOOSE, 1.0),
         begins=HELD,
     ),
-    "shaken": _lines(
+    "shaken": lines(
         "the value for the first quarter of the interval, then six times down to a "
         "fifth of it and back, in straight lines",
         *(1.0, *[LOOSE, 1.0] * CYCLES),
@@ -264,15 +271,15 @@ PRESSURES: dict[str, Preset] = {
 
 INJECTIONS: dict[str, Preset] = {
     "steady": PRESSURES["steady"],
-    "stopped": _lines(
+    "stopped": lines(
         "the value for half of the interval, then nothing; what has spread goes on",
         *(1.0, 1.0, 0.0),
         wave=lambda phase: np.where(phase <= 0.5, 1.0, 0.0),
     ),
-    "rising": _lines(
+    "rising": lines(
         "rises evenly from nothing to the value, which it has at the end", 0.0, 1.0
     ),
-    "pulses": _lines(
+    "pulses": lines(
         "the value, then six times down to nothing and back, in straight lines",
         *(1.0, *[0.0, 1.0] * CYCLES),
         repeats=0.0,

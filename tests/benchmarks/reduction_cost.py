@@ -15,8 +15,7 @@ from scipy.fft import idct
 
 from solver.arrays import Array
 from solver.discrete import Problem
-from solver.discrete.scales import Scales
-from solver.discrete.substructure import Elasticity, Substructure
+from solver.discrete.substructure import Elasticity, Scales, Substructure
 from solver.latin import PGD, Full, Paper, iterations
 from solver.latin.iterate import Checkpoint
 from solver.latin.stages.blocks import Blocks

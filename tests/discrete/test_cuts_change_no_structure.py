@@ -16,7 +16,7 @@ from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.plane.rectangles.sides import Side, SideComponent
 from solver.discrete.plane.rectangles.stack import Stack
-from solver.discrete.plane.rectangles.stack_bodies import bodies_of, ends_along
+from solver.discrete.plane.rectangles.stack_problem import bodies_of, ends_along
 from solver.discrete.problem import Problem
 from solver.discrete.rods.cut_rods import CutRods
 from solver.discrete.rods.end import End

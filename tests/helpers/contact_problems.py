@@ -6,8 +6,7 @@ from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.plane.rectangles.sides import Side, SideComponent, Support
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
-from solver.discrete.scales import Scales
-from solver.discrete.substructure import Elasticity, Substructure
+from solver.discrete.substructure import Elasticity, Scales, Substructure
 from solver.laws import (
     BodyStiffness,
     Component,

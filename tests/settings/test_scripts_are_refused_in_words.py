@@ -16,8 +16,7 @@ from scipy import sparse
 from solver import End, Latin, Problem, Rods, Stack, iterations
 from solver.discrete import Rope, Side, SideComponent, Spring, Support, discretise
 from solver.discrete.plane.rectangles.bricks import Brick
-from solver.discrete.scales import Scales
-from solver.discrete.substructure import Elasticity
+from solver.discrete.substructure import Elasticity, Scales
 from solver.latin import PGD, Anderson, Auto, Checkpoint, Nested, Stop
 from solver.latin.end.status_step import StatusStep
 from solver.laws import Dirichlet, FrictionLaw, Neumann, SlipFactor

@@ -11,7 +11,14 @@ from solver.arrays import Array, Indices
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.body import Body, Held, Load
 from solver.discrete.plane.joint import Joint
-from solver.discrete.structure import MOVED, Act, Direction, Footing
+from solver.discrete.structure import (
+    MOVED,
+    Act,
+    Direction,
+    Footing,
+    act_of_weight,
+    directed,
+)
 
 STRAIGHT = 1e-9
 """Motion aside, over the largest motion, of displacements along one direction."""
@@ -49,15 +56,14 @@ class DrawnBodies:
             if held.axis == 2:
                 yield self._act(held, "φ", (0.0, 1.0), held.mean, "rad")
         for load in loads:
-            directions, sizes = _directed(load.force.sum(axis=0))
+            directions, sizes = directed(load.force.sum(axis=0))
             pressure = load.pressure
             if pressure is None:
                 yield self._act(load, "F", directions, sizes, "N")
             else:
                 symbol = "p" if pressure.min() >= 0.0 else "σ"
                 yield self._act(load, symbol, directions, np.abs(pressure), "Pa")
-        middle = np.array([[0.5, 0.5]])
-        yield Act("body", "W", middle, *_directed(weights), "N")
+        yield act_of_weight(weights)
 
     def _held_by_nodes(self) -> list[list[Held]]:
         """Holds, grouped with those of the same nodes along the other axis."""
@@ -74,7 +80,7 @@ class DrawnBodies:
             motion = np.zeros((2, len(moved[0].mean)))
             for held in moved:
                 motion[held.axis] = held.mean
-            directions, sizes = _directed(motion)
+            directions, sizes = directed(motion)
             towards = directions[:, sizes.argmax()]
             values = towards @ motion
             aside = motion - np.outer(towards, values)
@@ -157,12 +163,3 @@ class DrawnBodies:
         axes = (2,) + (1,) * (points.ndim - 2)
         size = np.where(size > 0.0, size, 1.0).reshape(axes)
         return np.asarray((points - corner.reshape(axes)) / size)
-
-
-def _directed(force: Array) -> tuple[Array, Array]:
-    """Direction, (2, n_instants), and size, (n_instants,), of a force, (2, n_instants).
-
-    Where the force is zero the direction is, too.
-    """
-    size = np.hypot(*force)
-    return force / np.where(size > 0.0, size, 1.0), size

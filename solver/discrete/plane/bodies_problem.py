@@ -20,7 +20,7 @@ from solver.discrete.plane.cut_shapes import Seam
 from solver.discrete.plane.joint_laws import laws_of
 from solver.discrete.plane.makers.band import Band
 from solver.discrete.problem import Problem
-from solver.discrete.scales import Scales
+from solver.discrete.substructure import Scales
 from solver.laws import (
     BodyStiffness,
     Component,

@@ -14,21 +14,19 @@ from solver.discrete.condensed_part import (
     CondensedPart,
     Operator,
     PartForce,
-    kept_by,
     numbered,
 )
-from solver.discrete.inside import HELD
 from solver.discrete.loose_bodies import LooseBodiesError
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Load
 from solver.discrete.plane.body_parts import ShapePart
-from solver.discrete.plane.body_traces import TracesOfParts
+from solver.discrete.plane.body_traces import traces_of
 from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
 from solver.discrete.plane.lattice import Lattice
 from solver.discrete.plane.shared_operators import PartNodes, SharedOperators
-from solver.discrete.scales import Scales
+from solver.discrete.substructure import Scales
 from solver.refusal import Words
 
 FEW = 8
@@ -57,7 +55,7 @@ class CutBodies:
     shape_parts
         All parts in the axes of their shapes.
     parts
-        Parts, body by body; rows are by the names of `TracesOfParts`.
+        Parts, body by body; rows are by the names of `traces_of`.
     """
 
     def __init__(self, structure: Bodies) -> None:
@@ -72,7 +70,7 @@ class CutBodies:
         for body in bodies:
             key = body.cut_key
             if key not in shapes:
-                shapes[key] = CutShape.of(body)
+                shapes[key] = CutShape(body.shape, body.substructures, body.parts)
             self.cuts.append(shapes[key])
         self.frames = NodeFrames(
             structure.rotations,
@@ -93,9 +91,9 @@ class CutBodies:
         self._body_of_parts = np.repeat(np.arange(len(bodies)), counts).tolist()
         of_bodies = self._of_shapes()
         self.shape_parts = list(chain.from_iterable(of_bodies))
-        self._traces = TracesOfParts(
+        self._traces = traces_of(
             structure, self.cuts, self.frames, self.pieces, of_bodies
-        ).all()
+        )
         self._operators = SharedOperators(self._own_frames)
         self.parts = list(self._parts())
 
@@ -220,27 +218,10 @@ class CutBodies:
         traces = list(self._traces[owner].values())
         try:
             return self._operators.of(self.shape_parts[owner], on_nodes, traces)
-        except np.linalg.LinAlgError:
-            if self._is_held(owner, on_nodes.nodes):
-                raise
-        body = self.structure.bodies[self._body_of_parts[owner]]
-        raise LooseBodiesError.of([body.name])
-
-    def _is_held(self, owner: int, nodes: Indices) -> bool:
-        """Check whether what a part keeps leaves it no rigid motion.
-
-        `nodes` are its nodes among those of all bodies, (n_nodes,).
-        """
-        traces = list(self._traces[owner].values())
-        own, axes = np.divmod(kept_by(traces), self.shape_parts[owner].n_axes)
-        is_turn = axes == 2
-        kept = nodes[own]
-        along = self.frames.frames[kept, np.where(is_turn, 0, axes)]
-        along[is_turn] = 0.0
-        x, y = (self.structure.nodes[kept] / self.length).T
-        turns = (x - x.mean()) * along[:, 1] - (y - y.mean()) * along[:, 0]
-        motions = np.column_stack([along, np.where(is_turn, 1.0, turns)])
-        return bool(np.linalg.matrix_rank(motions, tol=HELD) == N_AXES)
+        except np.linalg.LinAlgError as trouble:
+            # One piece of an elastic body is singular only where it can move.
+            body = self.structure.bodies[self._body_of_parts[owner]]
+            raise LooseBodiesError.of([body.name]) from trouble
 
     def _nodes_of_parts(self) -> list[PartNodes]:
         """Nodes, motions and forces of every part; equal parts are made together."""

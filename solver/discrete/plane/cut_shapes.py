@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.cache import CACHE, content_of
 from solver.discrete.plane.beams import Beam
-from solver.discrete.plane.body import Body, Shape
+from solver.discrete.plane.body import Shape
 from solver.discrete.plane.meshes import Mesh
 
 
@@ -61,26 +60,6 @@ class CutShape:
         self.elements = [np.flatnonzero(self.labels == part) for part in numbers]
         self.nodes = [np.unique(shape.element_nodes[some]) for some in self.elements]
         self.seams = _seams_of(shape, self.labels)
-
-    @classmethod
-    def of(cls, body: Body) -> CutShape:
-        """Cut of a body, from the cache where an earlier structure had an equal one."""
-        shape = body.shape
-        given = None
-        if body.parts is not None:
-            given = content_of(body.parts)
-        key = "cut", shape.content, body.substructures, given
-        return CACHE.get(key, lambda: cls(shape, body.substructures, body.parts))
-
-    @property
-    def nbytes(self) -> int:
-        """Memory of labels, elements, nodes and seams, B."""
-        of_parts = sum(each.nbytes for each in [*self.elements, *self.nodes])
-        of_seams = sum(
-            seam.nodes.nbytes + seam.positions.nbytes + seam.weights.nbytes
-            for seam in self.seams
-        )
-        return self.labels.nbytes + of_parts + of_seams
 
 
 def _labels_of(shape: Shape, count: int) -> Indices:

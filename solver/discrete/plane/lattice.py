@@ -165,7 +165,7 @@ class Lattice:
 
     def chains_of(self, nodes: Indices) -> list[Indices]:
         """Chains, (n,) each, along consecutive nodes; [] if some belong to none."""
-        return chains_along(self, nodes, 1)
+        return chains_along(self.edges_of, nodes, 1)
 
     def _places(self, nodes: Indices) -> tuple[Indices, Indices]:
         """Row and column of nodes, (n,) each."""

@@ -6,10 +6,10 @@ of each edge of a mesh.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -173,7 +173,7 @@ class Mesh:
         Both ends of a plate are two chains, say. Nodes make none, [], if some of them
         belong to no chain.
         """
-        return chains_along(self, nodes, 2)
+        return chains_along(self.edges_of, nodes, 2)
 
     @property
     def n_corners(self) -> int:
@@ -277,27 +277,21 @@ class Mesh:
         return pieces
 
 
-class Shape(Protocol):
-    """A shape whose nodes make chains along edges."""
-
-    def edges_of(self, chain: Indices) -> Indices | None:
-        """Indices of the edges of a chain, (n_edges,); None if it is no chain."""
-
-
-def chains_along(shape: Shape, nodes: Indices, step: int) -> list[Indices]:
+def chains_along(
+    edges_of: Callable[[Indices], Indices | None], nodes: Indices, step: int
+) -> list[Indices]:
     """Chains of edges, (n,) each, along consecutive nodes, (n_nodes,).
 
-    An edge takes `step` nodes further. [] if some nodes belong to no chain.
+    `edges_of` tells the edges of a chain, or None; an edge takes `step` nodes further.
+    [] if some nodes belong to no chain.
     """
     chains = []
     first = 0
     while first < len(nodes):
         last = first + step + 1
-        while (
-            last < len(nodes) and shape.edges_of(nodes[first : last + step]) is not None
-        ):
+        while last < len(nodes) and edges_of(nodes[first : last + step]) is not None:
             last += step
-        if shape.edges_of(nodes[first:last]) is None:
+        if edges_of(nodes[first:last]) is None:
             return []
         chains.append(nodes[first:last])
         first = last

@@ -70,14 +70,14 @@ class SharedOperators:
         has_force = on_nodes.force is not None
         # Most parts that are alike have the very same traces.
         of_traces = [id(trace) for trace in traces]
-        same = part.key, on_nodes.turned, has_force, *of_traces
+        same = part.content, on_nodes.turned, has_force, *of_traces
         known = self._operators.get(same)
         if known is not None:
             return known
         dofs = np.concatenate([trace.dofs.ravel() for trace in traces])
         direction = np.concatenate([trace.direction.ravel() for trace in traces])
         alike = (
-            part.key,
+            part.content,
             dofs.tobytes(),
             _rounded(direction / direction.max()).tobytes(),
             on_nodes.turned,

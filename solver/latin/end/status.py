@@ -115,46 +115,7 @@ _MECHANISMS = {
     ),
 }
 """What a structure does, and what to do, by the kind of its mechanism."""
-_LOST_JUMP = (
-    "At {} no equilibrium goes on from the one before: friction falls with slip "
-    "faster than the structure unloads, so that it jumps, and none is found beyond. "
-    "Lower the load, raise friction_ratio or slip_length, or prescribe a displacement "
-    "in place of a force."
-)
-_JUMPED = (
-    " At {} no equilibrium goes on from the one before, as friction falls with slip "
-    "faster than the structure unloads: it jumps to another. Where it should not, "
-    "raise friction_ratio, slip_length or the number of elements."
-)
-_NOT_FOUND = (
-    "At {} no equilibrium was found, though contact forces within friction could "
-    "balance the loads there: friction is not free to choose its forces, and where it "
-    "is large it may leave no equilibrium, or bodies slide or tip until they come to "
-    "one. Lower the load or mu, or press more."
-)
-_NOT_HELD = (
-    "At {} no equilibrium was found: friction alone seems not to hold what is pulled. "
-    "Lower the load, raise friction or pressure, or hold an end."
-)
-_SEARCHED = " The iterates by themselves had come within {:g} % of its contact force."
 _CERTIFIED = "Certified: equilibrium and all contact laws hold up to rounding"
-_FOUND = (
-    " A status step found it from iterate {}, whose contact force was {} % away from "
-    "it."
-)
-_FROM_ANOTHER = (
-    " A status step found it without an iteration, from where another run stuck, "
-    "slipped and opened."
-)
-_BY_INCREMENTS = (
-    " It is the incremental solver's answer: the status step began at the statuses of "
-    "iterate {}, whose own contact force was still {} % away from it."
-)
-_FEW_MODES = "The modes may be too few: raise pgd_modes, lower pgd_tolerance"
-_LONGER = (
-    "Give the run longer, or ask for less: fewer elements or instants, a larger "
-    "accuracy."
-)
 
 
 def collapses(problem: Problem, collapse: Collapse) -> Status:
@@ -192,16 +153,31 @@ def jump_of(problem: Problem, instant: int) -> str:
 
 def lost_jump(problem: Problem, instant: int, lost_from: int) -> Status:
     """Status of a run that jumps, and has no equilibrium from an instant on."""
-    advice = _LOST_JUMP.format(jump_of(problem, instant))
-    return Status(Ending.STALLED, advice, lost_from=lost_from)
+    return Status(
+        Ending.STALLED,
+        f"At {jump_of(problem, instant)} no equilibrium goes on from the one before: "
+        "friction falls with slip faster than the structure unloads, so that it jumps, "
+        "and none is found beyond. Lower the load, raise friction_ratio or "
+        "slip_length, or prescribe a displacement in place of a force.",
+        lost_from=lost_from,
+    )
 
 
 def not_found(status: Status, problem: Problem, instant: int) -> Status:
     """Status of a run whose status step finds no equilibrium from an instant on."""
-    message = _NOT_FOUND
+    reason = (
+        ", though contact forces within friction could balance the loads there: "
+        "friction is not free to choose its forces, and where it is large it may leave "
+        "no equilibrium, or bodies slide or tip until they come to one. Lower the load "
+        "or mu, or press more."
+    )
     if problem.is_chain:
-        message = _NOT_HELD
-    return replace(status, advice=message.format(jump_of(problem, instant)))
+        reason = (
+            ": friction alone seems not to hold what is pulled. Lower the load, raise "
+            "friction or pressure, or hold an end."
+        )
+    found = f"At {jump_of(problem, instant)} no equilibrium was found"
+    return replace(status, advice=f"{found}{reason}")
 
 
 def diverged(iteration: int) -> Status:
@@ -231,7 +207,10 @@ def certified(
     """
     message = f"{_CERTIFIED} (residual {certificate.residual:.0e})."
     if math.isnan(error):
-        message += _FROM_ANOTHER
+        message += (
+            " A status step found it without an iteration, from where another run "
+            "stuck, slipped and opened."
+        )
     else:
         message += _error_of_search(answer, error)
         if advice:
@@ -247,10 +226,20 @@ def _error_of_search(answer: Answer, error: float) -> str:
     if error > 1.0:
         shown = "more than 100"
     if error > FAR:
-        return _BY_INCREMENTS.format(before, shown)
+        return (
+            " It is the incremental solver's answer: the status step began at the "
+            f"statuses of iterate {before}, whose own contact force was still {shown} "
+            "% away from it."
+        )
     if answer.is_beside:
-        return _SEARCHED.format(percent)
-    return _FOUND.format(before, shown)
+        return (
+            f" The iterates by themselves had come within {percent:g} % of its contact "
+            "force."
+        )
+    return (
+        f" A status step found it from iterate {before}, whose contact force was "
+        f"{shown} % away from it."
+    )
 
 
 def without_certificate(status: Status, problem: Problem, *, has_bases: bool) -> Status:
@@ -272,7 +261,12 @@ def with_jump(
     """Add to a status the instants at which the certified solution jumps, if any."""
     if certificate is None or certificate.solution.jumps_at is None:
         return status
-    message = _JUMPED.format(jump_of(problem, certificate.solution.jumps_at))
+    jump = jump_of(problem, certificate.solution.jumps_at)
+    message = (
+        f" At {jump} no equilibrium goes on from the one before, as friction falls "
+        "with slip faster than the structure unloads: it jumps to another. Where it "
+        "should not, raise friction_ratio, slip_length or the number of elements."
+    )
     return replace(status, advice=status.advice + message)
 
 
@@ -313,7 +307,9 @@ def remedies_of(*, may_finish: bool, has_bases: bool) -> Remedies:
         also = ""
     of_bases = ""
     if has_bases:
-        of_bases = f"{_FEW_MODES}{also}."
+        of_bases = (
+            f"The modes may be too few: raise pgd_modes, lower pgd_tolerance{also}."
+        )
     return Remedies(of_k, of_bases)
 
 
@@ -331,7 +327,10 @@ def exhausted(lack: str, remedies: Remedies, *, may_go_on: bool) -> Status:
         Whether iterations are left, so that seconds are the limit.
     """
     if may_go_on:
-        remedy = _LONGER
+        remedy = (
+            "Give the run longer, or ask for less: fewer elements or instants, a "
+            "larger accuracy."
+        )
     elif remedies.of_bases:
         remedy = remedies.of_bases
     else:

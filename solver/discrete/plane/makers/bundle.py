@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 
@@ -75,14 +75,11 @@ class Wires:
         placed = []
         for wire in range(len(self.centres)):
             pattern, turn = _first_order(tuple(self._contacts(wire).items()))
-            placed.append((self._shaped(pattern), turn))
+            # To mesh it takes as long as a few iterations, and loads leave it alone.
+            key = Disc, self.radius, pattern
+            make = partial(Disc.of, self.radius, dict(pattern))
+            placed.append((CACHE.get(key, make), turn))
         return placed
-
-    def _shaped(self, pattern: Pattern) -> Disc:
-        """Shape of a wire with zones by their direction; equal wires share it."""
-        # To mesh it takes as long as a few iterations, and loads leave it alone.
-        key = Disc, self.radius, pattern
-        return CACHE.get(key, lambda: Disc.of(self.radius, dict(pattern)))
 
     def _contacts(self, wire: int) -> dict[int, Zone]:
         """Zones of a wire by their direction."""
@@ -96,12 +93,11 @@ class Wires:
     def plate(self) -> Plate:
         """The plate on the highest wires."""
         key = Plate, self.packing, self.radius, self.under_plate
-        return CACHE.get(key, self._make_plate)
-
-    def _make_plate(self) -> Plate:
-        """A new plate."""
         places = self.centres[self.highest, 0]
-        return Plate.of(places, self.radius, THICKNESS * self.radius, self.under_plate)
+        thickness = THICKNESS * self.radius
+        return CACHE.get(
+            key, lambda: Plate.of(places, self.radius, thickness, self.under_plate)
+        )
 
     def chain(self, wire: int, direction: int) -> Indices:
         """Chain of a wire in a direction, counter-clockwise."""

@@ -127,13 +127,6 @@ def act_of_ground(settlement: Array, strips: Sequence[Brick], columns: int) -> A
     )
 
 
-def act_of_weight(weight: Array) -> Act:
-    """Arrow of the weight of all bodies, shape (2, n_instants), N, in their middle."""
-    size = np.hypot(*weight)
-    towards = weight / np.where(size > 0.0, size, 1.0)
-    return Act("body", "W", on_side("body", [0.5]), towards, size, "N")
-
-
 def holds_of(
     sides: Mapping[str, Side], support: Support | None, spring: Spring | None
 ) -> Iterator[Hold]:
