@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -22,7 +22,9 @@ from solver.discrete.rods.loads import (
 from solver.discrete.rods.pieces import (
     NO_ROW,
     Piece,
+    RodPieces,
     RodRows,
+    content_without_friction,
 )
 from solver.discrete.rods.rods import Rods
 from solver.discrete.substructure import Elasticity, Scales, Substructure, tributary
@@ -105,19 +107,35 @@ class CutRods:
         positions = []
         for of_rod, dofs in zip(self._positions, self._rows.dofs_at, strict=True):
             positions.append(np.repeat(of_rod, dofs))
-        # Pieces of equal operators share them, also those of different rods.
-        shared: dict[tuple[object, ...], Elasticity] = {}
-        substructures = list[Substructure]()
-        for rod in range(len(self._rods)):
-            substructures.extend(self._substructures(rod, shared))
+        parts = CACHE.get(self._content(), self._parts)
         return Problem(
-            substructures=tuple(substructures),
+            substructures=parts.substructures,
             interfaces=dict(self._interfaces()),
             positions=np.concatenate(positions),
             instants=rods.instants,
             carried=carried,
             scales=scales,
         )
+
+    def _content(self) -> Hashable:
+        """Digest of the data on which substructures depend: all except friction."""
+        contents = {id(rods): content_without_friction(rods) for rods in self._rods}
+        return (
+            "substructures of rods",
+            self._scales,
+            self._rows.sides.shape,
+            (self._rows.rubbing.start, self._rows.rubbing.stop),
+            tuple(contents[id(rods)] for rods in self._rods),
+        )
+
+    def _parts(self) -> RodPieces:
+        """All substructures, rod after rod, from the cache if possible."""
+        # Pieces of equal operators share them, also those of different rods.
+        shared: dict[tuple[object, ...], Elasticity] = {}
+        substructures = list[Substructure]()
+        for rod in range(len(self._rods)):
+            substructures.extend(self._substructures(rod, shared))
+        return RodPieces(substructures)
 
     def _substructures(
         self, rod: int, shared: dict[tuple[object, ...], Elasticity]
@@ -127,10 +145,9 @@ class CutRods:
         stiffness = self._stiffness(rods)
         free_force = force_of_strains(rods, stiffness)
         inner_force = self._inner_force(rods, free_force)
-        on_springs = rods.ends_on_springs
-        rows_of_pieces = self._rows.rows_of(rod)
-        for piece, rows in zip(self._rows.pieces(), rows_of_pieces, strict=True):
-            springs = piece.springs(on_springs)
+        for piece in self._rows.pieces():
+            rows = self._rows.rows_of(rod, piece)
+            springs = piece.springs(rods)
             # A node of a break, or one that does not rub, has no row.
             is_row = rows != NO_ROW
             key = self._key(rods, piece, stiffness, springs, is_row)

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import dataclasses
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from solver.arrays import Indices
+from solver.cache import content_of
 from solver.discrete.rods.end import End
 from solver.discrete.rods.rods import Rods
-from solver.discrete.substructure import substructure_sizes
+from solver.discrete.substructure import Substructure, substructure_sizes
 from solver.laws import Component
 
 NO_ROW = -1
 """Number of a boundary row that a node does not have."""
+OF_FRICTION = {"strength", "factors", "pressure", "friction_law"}
+"""Fields of rods on which their substructures do not depend."""
 
 
 def pieces_of(rods: Rods) -> tuple[list[int], int]:
@@ -54,13 +58,52 @@ class Piece(NamedTuple):
         first = self.first + self.number
         return slice(first, first + self.size + 1)
 
-    def springs(self, of_rod: Mapping[int, End]) -> dict[int, End]:
-        """Ends on springs by their node in this piece, from those of the rod."""
-        return {
-            node - self.first: end
-            for node, end in of_rod.items()
-            if self.first <= node <= self.first + self.size
-        }
+    def springs(self, rods: Rods) -> dict[int, End]:
+        """Ends of the rod that springs hold, by their node in this piece."""
+        held = dict[int, End]()
+        for node, end in ((0, rods.left), (rods.elements, rods.right)):
+            if end.is_on_spring and self.first <= node <= self.first + self.size:
+                held[node - self.first] = end
+        return held
+
+
+class RodPieces:
+    """Substructures of all rods, rod after rod, as cached between runs.
+
+    Attributes
+    ----------
+    substructures
+        The substructures, whose own arrays are made read-only.
+    nbytes
+        Memory of these arrays, B.
+    """
+
+    def __init__(self, substructures: Iterable[Substructure]) -> None:
+        self.substructures = tuple(substructures)
+        self.nbytes = 0
+        for each in self.substructures:
+            for array in (each.dofs, each.rows, each.body_force, each.free_force):
+                if array is not None:
+                    array.flags.writeable = False
+                    self.nbytes += array.nbytes
+
+
+def content_without_friction(data: Rods | End) -> Hashable:
+    """Values of all fields except those of friction; of arrays their digests.
+
+    Substructures that are kept between runs depend on these alone.
+    """
+    values: list[Hashable] = []
+    for field in dataclasses.fields(data):
+        if field.name in OF_FRICTION:
+            continue
+        value = getattr(data, field.name)
+        if isinstance(value, np.ndarray):
+            value = content_of(value)
+        elif isinstance(value, End):
+            value = content_without_friction(value)
+        values.append(value)
+    return tuple(values)
 
 
 class RodRows:
@@ -118,7 +161,6 @@ class RodRows:
         breaks = np.diff(self._beyond, axis=1)
         self.dofs_at = np.ones((len(rods), rods[0].elements + 1), dtype=np.intp)
         self.dofs_at[:, np.cumsum(self.sizes)[:-1]] += breaks
-        self._first_dofs = np.cumsum([0, *self.dofs_at.sum(axis=1)])
         # Contacts that have a rod below.
         if n_contacts == len(rods):
             self._n_lower = 0
@@ -143,15 +185,14 @@ class RodRows:
 
     def dofs_of(self, rod: int, piece: Piece) -> Indices:
         """Degrees of freedom of the nodes of a piece of a rod, (n_nodes,)."""
-        first = self._first_dofs[rod] + self._beyond[rod, piece.number] + piece.first
+        before = int(self.dofs_at[:rod].sum()) + int(self._beyond[rod, piece.number])
+        first = before + piece.first
         return np.arange(first, first + piece.size + 1)
 
-    def rows_of(self, rod: int) -> Iterator[Indices]:
-        """Yield boundary rows of pieces, (n,), or NO_ROW: of contacts, then of ends."""
-        sides = self.sides[self._sides_of(rod)]
-        for piece in self.pieces():
-            at_sides = sides[:, piece.nodes].ravel()
-            yield np.concatenate([at_sides, self.ends[:, piece.number, rod]])
+    def rows_of(self, rod: int, piece: Piece) -> Indices:
+        """Boundary rows of a piece, (n,), or NO_ROW: of contacts, then of both ends."""
+        at_sides = self.sides[self._sides_of(rod), piece.nodes]
+        return np.concatenate([at_sides.ravel(), self.ends[:, piece.number, rod]])
 
     def _sides_of(self, rod: int) -> list[int]:
         """Sides of contacts on a rod: with its support, or with its neighbours."""

@@ -182,12 +182,6 @@ class Rods:
         return {"right": self.right, "left": self.left}
 
     @property
-    def ends_on_springs(self) -> dict[int, End]:
-        """Ends that springs hold, by their node."""
-        ends = {0: self.left, self.elements: self.right}
-        return {node: end for node, end in ends.items() if end.is_on_spring}
-
-    @property
     def load(self) -> Array:
         """Force on the right end if there were no friction, shape (n_instants,), N."""
         if self.right.is_prescribed:
