@@ -5,9 +5,10 @@ from solver.latin.direction.directions import Auto, Paper
 from solver.latin.end.certified import Answer
 from solver.latin.end.status import Decision, Ending, Status
 from solver.latin.end.status_step import StatusStep
+from solver.latin.end.stop import Stop
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iteration import iterations
-from solver.latin.method import Latin, Stop
+from solver.latin.method import Latin
 from solver.latin.slabs import solve_in_slabs
 from solver.latin.solve import Record, Solution, judged, record, solve
 from solver.latin.stages.linear import Full
