@@ -16,7 +16,8 @@ from solver.discrete.plane.body import Body, NodeSpring
 from solver.discrete.plane.lattice import Lattice
 from solver.discrete.plane.rectangles.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.plane.rectangles.stack import Stack
-from solver.discrete.plane.rectangles.stack_boundary import StackBoundary
+from solver.discrete.plane.rectangles.stack_joints import StackJoints
+from solver.discrete.plane.rectangles.stack_sides import StackSides, is_moved
 from solver.discrete.problem import Problem
 from solver.discrete.substructure import Scales, substructure_sizes
 from solver.refusal import RefusedError, Words
@@ -27,7 +28,8 @@ def bodies_of(stack: Stack) -> Bodies:
     shapes = _shapes_of(stack)
     of_size = cache(partial(_ends_of, stack))
     ends = [of_size(brick.columns, brick.rows) for brick in stack.rectangles]
-    boundary = StackBoundary(stack, shapes, ends)
+    joints = StackJoints.of(stack, shapes)
+    sides = StackSides(stack, shapes, joints.lines, ends)
     springs = []
     if stack.spring is not None:
         foot = int(shapes[0].grid[0, -1])
@@ -38,9 +40,9 @@ def bodies_of(stack: Stack) -> Bodies:
         )
     return Bodies(
         bodies=_bodies_of(stack, shapes, ends),
-        joints=boundary.joints(),
-        held=boundary.held(),
-        loads=boundary.loads(),
+        joints=joints.all(),
+        held=sides.held(),
+        loads=sides.loads(),
         instants=stack.instants,
         duration=stack.duration,
         state=stack.state,

@@ -1,22 +1,21 @@
-"""Boundary of rectangular bodies: joints where they touch, holds, and loads."""
+"""Outer sides of rectangular bodies: where they are held, moved, pulled and pressed."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array, Flags, Indices
+from solver.arrays import Array, Indices
 from solver.discrete.elements import EDGE_MASS
 from solver.discrete.plane.body import Held, Load
-from solver.discrete.plane.joint import Joint
 from solver.discrete.plane.lattice import Lattice
-from solver.discrete.plane.rectangles.bricks import BrickJoint, joints_of
-from solver.discrete.plane.rectangles.sides import SETTLED, SideComponent
+from solver.discrete.plane.rectangles.bricks import BrickJoint
+from solver.discrete.plane.rectangles.sides import Side, SideComponent
 from solver.discrete.plane.rectangles.stack import Stack
 
 SIDES = "top", "bottom", "left", "right"
@@ -25,7 +24,7 @@ first."""
 
 
 class Span(NamedTuple):
-    """Part of a side of a body: on which another one lies, or on which none does.
+    """Part of a side of a body on which no other body lies.
 
     `first` and `last` are its ends, in elements from the beginning of the side.
     """
@@ -37,15 +36,17 @@ class Span(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class StackBoundary:
-    """Joints, holds and loads of a stack, as data of bodies of any shape.
+class StackSides:
+    """Outer sides of a stack, as holds and loads of bodies of any shape.
 
     Attributes
     ----------
     stack
         The stack.
     shapes
-        Lattice of every body; equal bodies have the very same one.
+        Lattice of every body.
+    lines
+        Lines along which bodies touch each other, or their support.
     ends
         Ends of the parts of every body, along and up, in elements from its lower left
         corner.
@@ -53,158 +54,8 @@ class StackBoundary:
 
     stack: Stack
     shapes: Sequence[Lattice]
+    lines: Sequence[BrickJoint]
     ends: Sequence[tuple[Sequence[int], Sequence[int]]]
-
-    @cached_property
-    def lines(self) -> list[BrickJoint]:
-        """Lines along which bodies touch each other, or their support."""
-        lines = joints_of(self.stack.rectangles)
-        if self.stack.support is None or self.stack.strips:
-            return [line for line in lines if line.below is not None]
-        return lines
-
-    def _spans_at(self, line: BrickJoint) -> list[Span]:
-        """Parts of sides of bodies along a line; the upper or right one is first."""
-        spans = []
-        for body, side in line.sides:
-            corner = self.stack.rectangles[body][int(line.is_upright)]
-            spans.append(Span(body, side, line.first - corner, line.last - corner))
-        return spans
-
-    def _chain(self, span: Span) -> Indices:
-        """Nodes of a body along a span, (n,)."""
-        return self.shapes[span.body].side(span.side)[span.first : span.last + 1]
-
-    def joints(self) -> list[Joint]:
-        """Joints with pairs."""
-        chosen = [line for line in self.lines if self._has_pairs(line)]
-        named = zip(self._names(chosen), chosen, strict=True)
-        return [self._joint(name, line) for name, line in named]
-
-    def _has_pairs(self, line: BrickJoint) -> bool:
-        """Check whether any node of a joint has a pair.
-
-        It has none where both sides are held across the joint.
-        """
-        if line.is_upright:
-            return line.last - line.first > 1
-        support = self.stack.support
-        has_strength = support is not None and support.strength is not None
-        if line.below is None and has_strength:
-            return True
-        sides = self.stack.sides
-        held = [
-            line.first == 0 and sides["left"].y.prescribed,
-            line.last == self.stack.grid[0] and sides["right"].y.prescribed,
-        ]
-        return line.last - line.first + 1 > sum(held)
-
-    def _paired(self, line: BrickJoint) -> Flags | None:
-        """Mask of the nodes of a joint that have a pair, (n,); None: all of them.
-
-        An upright joint has no pair at the ends of its bodies: three contacts would
-        meet in a corner, of whose forces only sums are determined, and which of them
-        slips would depend on how they share.
-        """
-        if not line.is_upright:
-            return None
-        paired = np.ones(line.last - line.first + 1, dtype=bool)
-        paired[[0, -1]] = False
-        return paired
-
-    def _joint(self, name: str, line: BrickJoint) -> Joint:
-        """Joint along a line."""
-        chains = [self._chain(span) for span in self._spans_at(line)]
-        nodes_below = None
-        if line.below is not None:
-            nodes_below = chains[1]
-        normal = np.eye(2)[1 - int(line.is_upright)]
-        # The tangent of upright joints runs up, as that of lying ones to the right.
-        joint = Joint(
-            name=name,
-            above=line.above,
-            nodes=chains[0],
-            below=line.below,
-            nodes_below=nodes_below,
-            normals=np.tile(normal, (len(chains[0]), 1)),
-            friction=self._coefficients(line),
-            start=self._start(line),
-            is_left_handed=line.is_upright,
-            paired=self._paired(line),
-        )
-        if line.below is None:
-            return self._on_support(joint, line)
-        return joint
-
-    def _on_support(self, joint: Joint, line: BrickJoint) -> Joint:
-        """Joint with the gap and the strength of the support."""
-        support = self.stack.support
-        assert support is not None
-        nodes = slice(line.first, line.last + 1)
-        strength = None
-        if support.strength is not None:
-            strength = support.strength[nodes]
-        return replace(
-            joint,
-            gap=support.gap[nodes],
-            strength=strength,
-            is_image=support.is_image,
-        )
-
-    def _start(self, line: BrickJoint) -> float:
-        """Position of the first node of a joint along the grid, m."""
-        axis = int(line.is_upright)
-        size = self.stack.length, self.stack.height
-        return size[axis] / self.stack.elements[axis] * line.first
-
-    def _coefficients(self, line: BrickJoint) -> Array | float:
-        """Coefficient of friction of a joint, or those of its nodes, (n,)."""
-        stack = self.stack
-        if stack.head_friction is not None and line.is_upright:
-            return float(stack.head_friction)
-        nodes = slice(line.first, line.last + 1)
-        support = stack.support
-        if support is not None and (line.below is None or line.below < stack.strips):
-            of_ground = np.asarray(support.friction)
-            if of_ground.ndim:
-                return of_ground[nodes]
-            return float(of_ground)
-        mu = np.asarray(stack.friction)
-        if mu.ndim > 1:
-            mu = mu[line.above - 1]
-        if mu.size > 1:
-            return np.asarray(mu[nodes])
-        return float(mu.item())
-
-    def _names(self, lines: Sequence[BrickJoint]) -> list[str]:
-        """Names of joints; one that comes again has a number."""
-        names = list[str]()
-        counts = dict[str, int]()
-        for line in lines:
-            name = self._name(line)
-            counts[name] = counts.get(name, 0) + 1
-            if counts[name] > 1:
-                name = f"{name} ({counts[name]})"
-            names.append(name)
-        return names
-
-    def _name(self, line: BrickJoint) -> str:
-        """Name of the contact of two bodies, or of a body and its support."""
-        above = line.above
-        below = line.below
-        if self.stack.is_pile:
-            if below is None:
-                return "support"
-            return f"contact {above}-{above + 1}"
-        strips = self.stack.strips
-        brick = f"brick {above + 1 - strips}"
-        if below is None:
-            return f"support and {brick}"
-        if below >= strips:
-            return f"brick {below + 1 - strips} and {brick}"
-        if self.stack.settlement[below].any():
-            return f"{SETTLED} and {brick}"
-        return f"support and {brick}"
 
     @cached_property
     def spans(self) -> list[Span]:
@@ -223,8 +74,10 @@ class StackBoundary:
         """Ends of what lies under joints, in elements, by body and side."""
         covered = dict[tuple[int, str], list[tuple[int, int]]]()
         for line in self.lines:
-            for body, side, first, last in self._spans_at(line):
-                covered.setdefault((body, side), []).append((first, last))
+            for body, side in line.sides:
+                corner = self.stack.rectangles[body][int(line.is_upright)]
+                ends = line.first - corner, line.last - corner
+                covered.setdefault((body, side), []).append(ends)
         return covered
 
     def _spans_of(
@@ -260,6 +113,10 @@ class StackBoundary:
         if span.side == "top":
             return brick.y + brick.rows == self.stack.grid[1]
         return True
+
+    def _chain(self, span: Span) -> Indices:
+        """Nodes of a body along a span, (n,)."""
+        return self.shapes[span.body].side(span.side)[span.first : span.last + 1]
 
     def held(self) -> list[Held]:
         """Holds of prescribed displacements, by the names of the sides."""
@@ -359,3 +216,8 @@ class StackBoundary:
         force[:-1] += of_edges[0]
         force[1:] += of_edges[1]
         return force
+
+
+def is_moved(side: Side) -> bool:
+    """Check whether a displacement of a side is prescribed."""
+    return any(component.prescribed for component in side)
