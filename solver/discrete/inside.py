@@ -16,7 +16,7 @@ from solver.discrete.condensed_part import (
     PartForce,
 )
 from solver.discrete.schur_complement import SchurComplement
-from solver.discrete.substructure import Scales, Substructure
+from solver.discrete.substructure import Scales, Substructure, check_forces
 
 HELD = 1e-9
 """Smallest singular value of a rigid motion that prescribed displacements hinder, over
@@ -105,11 +105,13 @@ class Inside:
         found = dict[int, Substructure]()
         for operator, numbers in by_operator.items():
             forces = [self._parts[number].force for number in numbers]
-            on_kept = _condensed_by(operator.condensed, forces)
-            for number, force in zip(numbers, on_kept, strict=True):
-                found[number] = Substructure(
-                    operator.elasticity, self.dofs[number], rows[number], force
-                )
+            equal = Substructure.of_equal(
+                operator.elasticity,
+                [self.dofs[number] for number in numbers],
+                [rows[number] for number in numbers],
+                _condensed_by(operator.condensed, forces),
+            )
+            found.update(zip(numbers, equal, strict=True))
         return tuple(found[number] for number in range(len(operators)))
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
@@ -299,6 +301,7 @@ def _condensed_by(
             patterns = np.array([force.patterns for force in some])
             courses = np.array([force.courses for force in some])
             over_time = condensed.condense(patterns) @ courses
+            check_forces(over_time)
             found.update(zip([id(force) for force in some], over_time, strict=True))
     return [found.get(id(force)) for force in forces]
 

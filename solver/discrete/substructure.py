@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 
@@ -9,7 +10,16 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.checks import ALIKE, POSITIVE, InstanceOf, Kind, Numbers, check, check_value
+from solver.checks import (
+    ALIKE,
+    POSITIVE,
+    InstanceOf,
+    Kind,
+    Numbers,
+    check,
+    check_value,
+    checked_copies,
+)
 from solver.refusal import RefusedError, Words
 
 
@@ -167,6 +177,45 @@ class Substructure:
         n_dofs = self.elasticity.stiffness.shape[0]
         kinds = _kinds_of_fields(n_dofs, len(self.elasticity.trace))
         check(self, **kinds)
+
+    @classmethod
+    def of_equal(
+        cls,
+        elasticity: Elasticity,
+        dofs: Sequence[Indices],
+        rows: Sequence[Indices],
+        body_forces: Sequence[Array | None],
+    ) -> list[Substructure]:
+        """Substructures that share an operator; only the first is checked.
+
+        Of each there are its `dofs`, (n_dofs,), its `rows`, (n_boundary,), and the
+        forces inside, (n_dofs, n_instants), scaled, or None; `check_forces` is for
+        many of these.
+
+        Raises
+        ------
+        RefusedError
+            For degrees of freedom, rows and forces of different counts, and forces that
+            do not fit.
+        """
+        for name, each in (("dofs", dofs), ("rows", rows)):
+            if len({len(numbers) for numbers in each}) > 1:
+                raise RefusedError(
+                    f"Substructure.{name}",
+                    Words("of several lengths"),
+                    "as many for each substructure of an operator",
+                    "make those of each operator together",
+                )
+        first = cls(elasticity, dofs[0], rows[0], body_forces[0])
+        return checked_copies(
+            first, len(dofs), dofs=dofs, rows=rows, body_force=body_forces
+        )
+
+
+def check_forces(body_forces: Array) -> None:
+    """Refuse forces inside some substructures, (n, n_dofs, n_instants)."""
+    kind = Numbers(((None, None, None),))
+    check_value("Substructure.body_force", body_forces, kind)
 
 
 def tributary(elements: int) -> Array:

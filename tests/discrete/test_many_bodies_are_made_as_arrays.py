@@ -9,7 +9,6 @@ import pytest
 from counting import calls_of
 from shaped_bodies import arch, courses_of_blocks
 
-from solver.arrays import distinct
 from solver.discrete import Bodies, discretise
 from solver.scenes import CATALOGUE
 
@@ -20,8 +19,8 @@ from solver.scenes import CATALOGUE
 @pytest.mark.parametrize(
     ("structure", "sizes", "calls"),
     [
-        (arch, (31, 121), 50),
-        (lambda columns: courses_of_blocks(columns, 4), (5, 15), 100),
+        (arch, (31, 121), 30),
+        (lambda columns: courses_of_blocks(columns, 4), (5, 15), 90),
     ],
 )
 def test_a_further_body_takes_few_calls(
@@ -45,7 +44,7 @@ def test_a_further_voussoir_is_data_in_few_calls() -> None:
         # Its mesh and its times are kept.
         settings.structure()
         made.append(calls_of(settings.structure))
-    assert made[1] - made[0] <= 60 * (121 - 31)
+    assert made[1] - made[0] <= 12 * (121 - 31)
 
 
 # Rounding in the positions of their nodes once gave each its own basis, and the coarse
@@ -63,13 +62,3 @@ def test_equal_parts_have_equal_macro_bases_to_the_bit(scene: str) -> None:
         assert np.array_equal(own.indptr, first.indptr)
         assert np.array_equal(own.data, first.data)
     assert len(known) < len(problem.substructures)
-
-
-def test_distinct_numbers_are_those_that_sorting_finds() -> None:
-    numbers = np.random.default_rng(1).integers(0, 40, 60)
-    for found, known in zip(
-        distinct(numbers, 50),
-        np.unique(numbers, return_index=True, return_inverse=True),
-        strict=True,
-    ):
-        np.testing.assert_array_equal(found, known)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -18,6 +19,8 @@ from solver.checks import (
     Number,
     Numbers,
     check,
+    check_value,
+    checked_copies,
 )
 from solver.discrete.elements import MOST_POISSON
 from solver.discrete.plane.beams import Beam
@@ -115,6 +118,18 @@ class Body:
 
     def __str__(self) -> str:
         return f"Body {self.name!r}"
+
+    def placed(self, names: Sequence[str], origins: Array, angles: Array) -> list[Body]:
+        """Bodies like this one with other names, origins and angles.
+
+        `origins` have the shape (n, 2), m, and `angles` (n,), rad.
+        """
+        count = len(names)
+        check_value("Body.origin", origins, Numbers(((count, 2),)))
+        check_value("Body.angle", angles, Numbers(((count,),)))
+        return checked_copies(
+            self, count, name=names, origin=list(origins), angle=angles.tolist()
+        )
 
     @property
     def cut_key(self) -> tuple[int, int, int]:

@@ -18,6 +18,8 @@ from solver.checks import (
     Kind,
     Numbers,
     check,
+    check_value,
+    checked_copies,
 )
 from solver.discrete.plane.body import Body
 from solver.refusal import RefusedError, Words
@@ -119,6 +121,32 @@ class Joint:
 
     def __str__(self) -> str:
         return f"Joint {self.name!r}"
+
+    def placed(
+        self,
+        names: Sequence[str],
+        above: Sequence[int],
+        below: Sequence[int | None],
+        normals: Array | None = None,
+        starts: Sequence[float] | None = None,
+    ) -> list[Joint]:
+        """Joints like this one with other names, bodies, normals and starts.
+
+        `above` and `below` are the numbers of their bodies, (n,); `normals` have the
+        shape (n, n_nodes, 2), and starts are in m: by default those of this joint.
+        """
+        count = len(names)
+        changed: dict[str, Sequence[object]] = {}
+        if normals is not None:
+            shape = count, len(self.nodes), 2
+            check_value("Joint.normals", normals, Numbers((shape,)))
+            changed["normals"] = list(normals)
+        if starts is not None:
+            check_value("Joint.start", np.asarray(starts), Numbers(((count,),)))
+            changed["start"] = starts
+        return checked_copies(
+            self, count, name=names, above=above, below=below, **changed
+        )
 
     @cached_property
     def along(self) -> int:

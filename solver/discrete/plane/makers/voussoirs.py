@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import groupby
 
 import numpy as np
 
@@ -209,19 +210,20 @@ class Ring:
 
         `weight` is that of voussoirs along x and y, shape (2, n_instants), N/m^3.
         """
+        names = [f"voussoir {number + 1}" for number in range(self.voussoirs)]
         bodies = list[Body]()
-        for number, shape in enumerate(self.shapes):
-            voussoir = Body(
-                f"voussoir {number + 1}",
+        for shape, run in groupby(range(self.voussoirs), self.shapes.__getitem__):
+            numbers = list(run)
+            own = slice(numbers[0], numbers[-1] + 1)
+            first = Body(
+                names[numbers[0]],
                 shape,
                 young,
                 poisson,
-                origin=self.origins[number],
-                angle=-float(self.turns[number]),
                 weight=weight,
                 substructures=substructures,
             )
-            bodies.append(voussoir)
+            bodies += first.placed(names[own], self.origins[own], -self.turns[own])
         ends = []
         # The upward axis of a block points into the ring, on the left side clockwise.
         for name, angle, sign in (
@@ -242,21 +244,18 @@ class Ring:
         _, face = self.faces
         directions = np.stack([np.cos(self.angles), -np.sin(self.angles)], axis=1)
         normals = np.repeat(directions[:, None], len(left), axis=1)
+        names = self.joint_names
+        last = self.voussoirs
         # The left block stands with its right side inwards.
-        above = [left] * self.voussoirs + [face]
-        below = [face[::-1]] + [right] * self.voussoirs
-        return [
-            Joint(
-                name,
-                number + 1,
-                above[number],
-                number,
-                below[number],
-                normals[number],
-                friction=friction,
-            )
-            for number, name in enumerate(self.joint_names)
-        ]
+        begins = Joint(names[0], 1, left, 0, face[::-1], normals[0], friction=friction)
+        inner = Joint(names[1], 2, left, 1, right, normals[1], friction=friction)
+        ends = Joint(
+            names[last], last + 1, face, last, right, normals[last], friction=friction
+        )
+        between = inner.placed(
+            names[1:last], range(2, last + 1), range(1, last), normals[1:last]
+        )
+        return [begins, *between, ends]
 
     def abutments(self, moved: Array) -> list[Held]:
         """Feet of both abutments: the left one at rest, the right one moved.

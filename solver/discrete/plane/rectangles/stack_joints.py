@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -42,10 +42,24 @@ class StackJoints:
         return cls(stack, shapes, lines)
 
     def all(self) -> list[Joint]:
-        """Joints with pairs."""
+        """Joints with pairs; those that are alike are made together."""
+        alike = dict[Hashable, list[int]]()
         chosen = [line for line in self.lines if self._has_pairs(line)]
-        named = zip(self._names(chosen), chosen, strict=True)
-        return [self._joint(name, line) for name, line in named]
+        for number, line in enumerate(chosen):
+            alike.setdefault(self._key(line), []).append(number)
+        names = self._names(chosen)
+        found = dict[int, Joint]()
+        for numbers in alike.values():
+            lines = [chosen[number] for number in numbers]
+            first = self._joint(lines[0])
+            made = first.placed(
+                [names[number] for number in numbers],
+                [line.above for line in lines],
+                [line.below for line in lines],
+                starts=[self._start(line) for line in lines],
+            )
+            found.update(zip(numbers, made, strict=True))
+        return [found[number] for number in range(len(chosen))]
 
     def _has_pairs(self, line: BrickJoint) -> bool:
         """Check whether any node of a joint has a pair.
@@ -79,6 +93,22 @@ class StackJoints:
         paired[[0, -1]] = False
         return paired
 
+    def _key(self, line: BrickJoint) -> Hashable:
+        """Key of a joint: those with equal keys differ in name, bodies and start."""
+        sides = [
+            (id(self.shapes[body]), side, line.first - self._corner(body, line))
+            for body, side in line.sides
+        ]
+        mu = self._coefficients(line)
+        if isinstance(mu, float):
+            values: Hashable = mu
+        else:
+            values = mu.tobytes()
+        if line.below is None:
+            # The gap and the strength of a support are those of each of its nodes.
+            values = line.first, values
+        return tuple(sides), line.last - line.first, values
+
     def _corner(self, body: int, line: BrickJoint) -> int:
         """Begin of a body along a joint, in elements on the grid."""
         return self.stack.rectangles[body][int(line.is_upright)]
@@ -89,7 +119,7 @@ class StackJoints:
         chain = self.shapes[body].side(side)
         return chain[line.first - corner : line.last - corner + 1]
 
-    def _joint(self, name: str, line: BrickJoint) -> Joint:
+    def _joint(self, line: BrickJoint) -> Joint:
         """Joint along a line."""
         chains = [self._chain(body, side, line) for body, side in line.sides]
         nodes_below = None
@@ -98,7 +128,7 @@ class StackJoints:
         normal = np.eye(2)[1 - int(line.is_upright)]
         # The tangent of upright joints runs up, as that of lying ones to the right.
         joint = Joint(
-            name=name,
+            name="joint",
             above=line.above,
             nodes=chains[0],
             below=line.below,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from functools import cache, partial
 
 import numpy as np
@@ -99,28 +99,35 @@ def _bodies_of(
     shapes: Sequence[Lattice],
     ends: Sequence[tuple[list[int], list[int]]],
 ) -> list[Body]:
-    """Bodies; those of one shape are cut alike."""
+    """Bodies; those that are alike are made together."""
     origins = _origins_of(stack)
     labels = dict[Lattice, Indices]()
-    bodies = []
+    alike = dict[Hashable, list[int]]()
     for number, shape in enumerate(shapes):
+        key = id(shape), stack.modulus(number), number < stack.strips
+        alike.setdefault(key, []).append(number)
+    found = dict[int, Body]()
+    for numbers in alike.values():
+        first = numbers[0]
+        shape = shapes[first]
         if shape not in labels:
-            labels[shape] = _labels_of(ends[number])
+            labels[shape] = _labels_of(ends[first])
         weight = None
-        if number >= stack.strips:
+        if first >= stack.strips:
             weight = stack.body_force
         body = Body(
-            name=f"body {number + 1}",
+            name="body",
             shape=shape,
-            young=stack.modulus(number) * stack.young,
+            young=stack.modulus(first) * stack.young,
             poisson=stack.poisson,
-            origin=origins[number],
             weight=weight,
             substructures=int(labels[shape].max()) + 1,
             parts=labels[shape],
         )
-        bodies.append(body)
-    return bodies
+        names = [f"body {number + 1}" for number in numbers]
+        made = body.placed(names, origins[numbers], np.zeros(len(numbers)))
+        found.update(zip(numbers, made, strict=True))
+    return [found[number] for number in range(len(shapes))]
 
 
 def _origins_of(stack: Stack) -> Array:
