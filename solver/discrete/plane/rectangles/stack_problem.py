@@ -17,7 +17,7 @@ from solver.discrete.plane.lattice import Lattice
 from solver.discrete.plane.rectangles.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.plane.rectangles.stack_joints import StackJoints
-from solver.discrete.plane.rectangles.stack_sides import StackSides, is_moved
+from solver.discrete.plane.rectangles.stack_sides import StackSides
 from solver.discrete.problem import Problem
 from solver.discrete.substructure import Scales, substructure_sizes
 from solver.refusal import RefusedError, Words

@@ -15,7 +15,7 @@ from solver.discrete.elements import EDGE_MASS
 from solver.discrete.plane.body import Held, Load
 from solver.discrete.plane.lattice import Lattice
 from solver.discrete.plane.rectangles.bricks import BrickJoint
-from solver.discrete.plane.rectangles.sides import Side, SideComponent
+from solver.discrete.plane.rectangles.sides import SideComponent
 from solver.discrete.plane.rectangles.stack import Stack
 
 SIDES = "top", "bottom", "left", "right"
@@ -216,8 +216,3 @@ class StackSides:
         force[:-1] += of_edges[0]
         force[1:] += of_edges[1]
         return force
-
-
-def is_moved(side: Side) -> bool:
-    """Check whether a displacement of a side is prescribed."""
-    return any(component.prescribed for component in side)
