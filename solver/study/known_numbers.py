@@ -11,10 +11,8 @@ import scipy
 
 from solver.arrays import Array
 from solver.discrete.contact_groups import NO_SLIP
-from solver.discrete.plane.makers.band import Band
 from solver.discrete.probes import LoopFields, reaction, reaction_moment
 from solver.discrete.problem import Problem
-from solver.discrete.rods.rods import Rods
 from solver.discrete.structure import Loop
 from solver.latin import Solution
 from solver.laws import Contact
@@ -113,10 +111,8 @@ def _area(force: Array, over: Array, start: int) -> float:
 def opening(answer: SolvedCase) -> Iterator[Number]:
     """Opening of the break of a wire, known and found."""
     strand = answer.settings.structure()
-    assert isinstance(strand, Rods)
     exact = broken_wire(strand)
     assert exact is not None
-    assert strand.broken is not None
     wire, node = strand.broken
     # Both nodes of the break stand one after the other.
     before = (wire - 1) * (strand.elements + 1) + node
@@ -362,7 +358,6 @@ def arch_thrust(answer: SolvedCase) -> Iterator[Number]:
     moved, thrust = answer.loop.along(answer.fields)
     weight = answer.settings.structure().downwards[-1]
     bounds = answer.settings.statics.thrusts()
-    assert bounds is not None
     known, largest = bounds
     if moved[-1] < 0.0:
         known = largest
@@ -374,7 +369,6 @@ def tensions(answer: SolvedCase) -> Iterator[Number]:
     curves = answer.settings.exact(answer.problem, answer.fields)
     (exact,) = [curve for curve in curves if curve.of == "axial force"]
     band = answer.settings.structure()
-    assert isinstance(band, Band)
     found = band.tensions(answer.problem, answer.fields)[:, -1]
     known = exact.up[:, -1]
     # The spans carry the tensions of the ends.
@@ -399,8 +393,6 @@ def pressed_wires(answer: SolvedCase) -> Iterator[Number]:
 def moved_end(answer: SolvedCase) -> Iterator[Number]:
     """Force that moves an end of a rod with a free other end: sqrt(2 E S mu p u)."""
     rods = answer.settings.structure()
-    assert isinstance(rods, Rods)
-    assert rods.right.displacement is not None
     strength = float(rods.strength.max())
     known = np.sqrt(
         2.0 * rods.stiffness * strength * float(rods.right.displacement[-1])
