@@ -14,6 +14,15 @@ NEVER = "never"
 """Word on an infinite value: an event that never comes."""
 
 
+def written(value: float, unit: str, digits: int = 6) -> str:
+    """Text of a value with its unit."""
+    if math.isnan(value):
+        return "none"
+    if math.isinf(value):
+        return NEVER
+    return f"{value:.{digits}g} {unit}".strip()
+
+
 @dataclass(frozen=True)
 class Parameter:
     """Parameter of a quantity, as in `NAME@PARAMETER`; optional unless `needed`.
