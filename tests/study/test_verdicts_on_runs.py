@@ -233,7 +233,7 @@ def test_no_other_solution_is_sought_for_a_run_that_claims_nothing(monkeypatch):
     def sought(*_, **__):
         raise AssertionError("a status step was made")
 
-    monkeypatch.setattr("solver.study.outcomes.status_step", sought)
+    monkeypatch.setattr("solver.study.scene_run.status_step", sought)
     settings = draw("block", 99796577, 25)
     early = CATALOGUE["block"].checked({**settings.changed(), "max_iterations": 20})
     (row,) = judged_runs([random_case(early, 99796577, 25)])
