@@ -153,9 +153,17 @@ def _pressed(law: Contact, force: Array, exact: HalfPlane) -> Iterator[Number]:
     """
     lengths, distances = _points(law, force)
     yield "largest pressure", "Pa", exact.peak, float((force / lengths).max())
-    # Half the width is twice the root of the second moment of an elliptic pressure.
-    second = float(force @ distances**2 / force.sum())
-    yield "half-width of contact", "m", exact.half_width, 2.0 * float(np.sqrt(second))
+    found = _half_width(distances, force)
+    yield "half-width of contact", "m", exact.half_width, found
+
+
+def _half_width(distances: Array, force: Array) -> float:
+    """Half-width of an elliptic distribution of forces, m, by their second moment.
+
+    A count of nodes would be coarse. The distances from the middle, m, and the forces
+    have the shape (n_points,).
+    """
+    return float(2.0 * np.sqrt(force @ distances**2 / force.sum()))
 
 
 def sheared_parabola(answer: SolvedCase) -> Iterator[Number]:
@@ -175,33 +183,13 @@ def _peak_of_shear(answer: SolvedCase, first: int) -> Iterator[Number]:
     lengths, distances = _points(answer.problem.contacts["support"], pressed)
     exact = _half_plane(answer, float(pressed.sum()))
     share = float(held.sum()) / (friction * float(pressed.sum()))
-    stuck = _stick_half_width(friction, distances, pressed, held)
+    # Friction lacks an ellipse as wide as the stick zone to its bound.
+    stuck = _half_width(distances, friction * pressed - held)
     yield "half-width of stick", "m", exact.stuck(share), stuck
     middle = int(np.argmax(pressed))
     tractions = exact.traction(distances[middle : middle + 1], friction, share)
     found = held[middle] / lengths[middle]
     yield "shear traction in the middle", "Pa", float(tractions[0]), found
-
-
-def _stick_half_width(
-    friction: float, distances: Array, pressed: Array, held: Array
-) -> float:
-    """Half-width of stick, m, by the second moments of pressure and friction.
-
-    Both are taken as of two square roots: a count of nodes would be coarse.
-
-    Parameters
-    ----------
-    friction
-        Coefficient of friction mu.
-    distances
-        Distances of the points from the middle, shape (n_points,), m.
-    pressed, held
-        Sizes of pressing force and friction, same shape, N/m.
-    """
-    reserve = friction * float(pressed.sum()) - held.sum()
-    moments = friction * float(distances**2 @ pressed) - float(distances**2 @ held)
-    return float(2.0 * np.sqrt(moments / reserve))
 
 
 def _energy_of_shear(answer: SolvedCase, first: int) -> Number:
@@ -357,8 +345,7 @@ def arch_thrust(answer: SolvedCase) -> Iterator[Number]:
     """
     moved, thrust = answer.loop.along(answer.fields)
     weight = answer.settings.structure().downwards[-1]
-    bounds = answer.settings.statics.thrusts()
-    known, largest = bounds
+    known, largest = answer.settings.statics.thrusts()
     if moved[-1] < 0.0:
         known = largest
     yield "thrust over weight", "", known, float(thrust[-1] / weight)

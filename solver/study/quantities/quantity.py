@@ -107,8 +107,3 @@ class Quantity:
 def quantity(title: str, unit: str = "", **options: Any) -> Callable[..., Quantity]:
     """Decorator: a function of a run becomes the quantity of its name."""
     return lambda of: Quantity(of.__name__, title, unit, of, **options)
-
-
-def by_name(*quantities: Quantity) -> dict[str, Quantity]:
-    """Table of quantities by their names, in the order given."""
-    return {each.name: each for each in quantities}
