@@ -128,8 +128,15 @@ def _heads_among(
     ]
     if block is None or not block.is_known:
         return heads
-    # Words that name no quantity may tell of the test, as in `phase;unloading`.
-    return [head for head in heads if head.is_comment or _is_known(head.cells)]
+    return [head for head in heads if _is_comment_or_known(head)]
+
+
+def _is_comment_or_known(head: Line) -> bool:
+    """Check whether a line is a comment, or names a quantity.
+
+    Words that name no quantity may tell of the test, as in `phase;unloading`.
+    """
+    return head.is_comment or _is_known(head.cells)
 
 
 def _is_head_of(line: Line, row: Line, separator: str) -> bool:

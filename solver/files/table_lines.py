@@ -133,10 +133,12 @@ def lines_of_text(data: bytes | str, refuse: Refuse) -> tuple[str, list[Line]]:
         lines = [_line(number, text, separator) for number, text in filled]
     except csv.Error as problem:
         raise refuse(str(problem)) from None
-    # Rules of dashes have cells, but say nothing.
-    return separator, [
-        line for line in lines if line.cells and not _RULE.fullmatch(line.text)
-    ]
+    return separator, [line for line in lines if not _is_empty(line)]
+
+
+def _is_empty(line: Line) -> bool:
+    """Check whether a line has no cells, or is a rule of dashes."""
+    return not line.cells or bool(_RULE.fullmatch(line.text))
 
 
 def _separator_of(texts: Sequence[str]) -> str:

@@ -110,19 +110,20 @@ def fingerprint(problem: Problem) -> bytes:
     # Equal matrices may store their entries in another order.
     stiffness.sort_indices()
     all_jumps.sort_indices()
+    kinds = [f"{key} {law.opens} {law.is_on_support}" for key, law in laws.items()]
+    of_jumps = [getattr(rules, name) for name in OF_JUMPS]
+    positions = [law.positions for law in laws.values()]
     fields = [
-        np.array(
-            [f"{key} {law.opens} {law.is_on_support}" for key, law in laws.items()]
-        ),
+        np.array(kinds),
         np.array(list(problem.contacts)),
         np.array([scales.displacement, scales.force, scales.time]),
         problem.instants,
         problem.positions,
         force,
         *problem.prescribed,
-        *[getattr(rules, name) for name in OF_JUMPS],
+        *of_jumps,
         np.array([rules.slip_factor.slips, rules.slip_factor.factors]),
-        *[law.positions for law in laws.values()],
+        *positions,
     ]
     if problem.rest is not None:
         fields.append(problem.rest)
