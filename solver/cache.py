@@ -43,8 +43,8 @@ class Cache:
     def __init__(self, largest: int) -> None:
         self._largest = largest
         self.nbytes = 0
-        self._results: OrderedDict[Hashable, Any] = OrderedDict()
-        self._sizes: dict[Hashable, int] = {}
+        # Results with their sizes, B: that of an object may change with its use.
+        self._results: OrderedDict[Hashable, tuple[Any, int]] = OrderedDict()
         self._lock = Lock()
 
     def get(self, key: Hashable, make: Callable[[], Result]) -> Result:
@@ -60,7 +60,7 @@ class Cache:
         with self._lock:
             if key in self._results:
                 self._results.move_to_end(key)
-                known: Result = self._results[key]
+                known: Result = self._results[key][0]
                 return known
         result = make()
         size = _size_of(result)
@@ -72,18 +72,17 @@ class Cache:
         """Store a result of a size in B, and drop the oldest that no longer fit."""
         with self._lock:
             # Another thread may have kept the same result meanwhile.
-            self.nbytes += size - self._sizes.get(key, 0)
-            self._results[key] = result
-            self._sizes[key] = size
+            _, before = self._results.get(key, (None, 0))
+            self.nbytes += size - before
+            self._results[key] = (result, size)
             while self.nbytes > self._largest:
-                oldest, _ = self._results.popitem(last=False)
-                self.nbytes -= self._sizes.pop(oldest)
+                _, (_, gone) = self._results.popitem(last=False)
+                self.nbytes -= gone
 
     def clear(self) -> None:
         """Drop all results."""
         with self._lock:
             self._results.clear()
-            self._sizes.clear()
             self.nbytes = 0
 
 

@@ -144,10 +144,7 @@ def postponed_interrupt() -> Iterator[Callable[[], bool]]:
         yield pressed.is_set
         return
 
-    def press(*_signal: object) -> None:
-        pressed.set()
-
-    signal.signal(signal.SIGINT, press)
+    signal.signal(signal.SIGINT, lambda *_: pressed.set())
     try:
         yield pressed.is_set
     finally:

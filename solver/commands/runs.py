@@ -101,23 +101,20 @@ def _mesh(chosen: argparse.Namespace) -> int:
             "--of", chosen.of, ", ".join(known), "choose a quantity of this scene"
         )
     values: dict[str, float] = {}
-    if not settings.MESH:
-        instants = _refined(settings, ["instants"], asked, values)
-        print("Elements: They are those of the mesh, refined where it was made.")
-        print(f"Instants: {_on_instants(settings, instants, asked)}")
-        return 0 if instants.has_values else 1
-    elements = _refined(settings, settings.MESH, asked, values)
+    elements = None
+    words = "They are those of the mesh, refined where it was made."
+    if settings.MESH:
+        elements = _refined(settings, settings.MESH, asked, values)
+        words = answer(elements, asked.unit)
     instants = _refined(settings, ["instants"], asked, values)
-    print(f"Elements: {answer(elements, asked.unit)}")
-    print(f"Instants: {_on_instants(settings, instants, asked)}")
+    print(f"Elements: {words}")
+    words = f"{answer(instants, asked.unit, TIME_STEP)} {undivided(settings)}"
+    print(f"Instants: {words.rstrip()}")
+    if elements is None:
+        return 0 if instants.has_values else 1
     if which := which_to_refine(elements, instants):
         print(which)
     return 0 if which else 1
-
-
-def _on_instants(settings: Settings, instants: Refinement, asked: Quantity) -> str:
-    """Sentences on the numbers of instants, and on steps that no number divides."""
-    return f"{answer(instants, asked.unit, TIME_STEP)} {undivided(settings)}".rstrip()
 
 
 def _refined(

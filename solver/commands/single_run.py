@@ -37,7 +37,7 @@ from solver.settings.values import SettingError
 from solver.study.known_reference import KnownReference, known_reference
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.finished import FinishedRun, KeyFigure, figures_of
-from solver.study.quantities.quantity import NEVER, Quantity
+from solver.study.quantities.quantity import Quantity, written
 
 RESULTS = ".npz", PARAVIEW
 """Ends of the names of result files."""
@@ -195,10 +195,10 @@ def _print_figures(
         for figure in of_loop:
             print(f"{figure.name:<20} {_in_words(run, figure)}")
         for quantity in of_run:
-            number = _number(quantity(run), quantity.unit)
+            number = written(quantity(run), quantity.unit)
             print(f"{quantity.name:<20} {number} ({quantity.title}, whole run)")
         for quantity in asked:
-            print(f"{quantity.name:<20} {_number(quantity(run), quantity.unit)}")
+            print(f"{quantity.name:<20} {written(quantity(run), quantity.unit)}")
         return
     figures |= {figure.name: figure.largest for figure in of_loop}
     figures |= {quantity.name: quantity(run) for quantity in of_run}
@@ -240,8 +240,8 @@ def _loss(problem: Problem, first: int) -> float:
 def _in_words(run: FinishedRun, figure: KeyFigure) -> str:
     """Text of a key figure: its largest value with its time, and its last value."""
     at = f"at {run.problem.instants[figure.instant]:.6g} s"
-    largest = _number(figure.largest, figure.unit)
-    last = _number(figure.last, figure.unit)
+    largest = written(figure.largest, figure.unit)
+    last = written(figure.last, figure.unit)
     return f"{largest} ({figure.title}, largest, {at}; last {last})"
 
 
@@ -254,15 +254,6 @@ def _key_figure_entry(run: FinishedRun, figure: KeyFigure) -> dict[str, object]:
         "largest_at": float(run.problem.instants[figure.instant]),
         "last": figure.last,
     }
-
-
-def _number(value: float, unit: str) -> str:
-    """Text of a number with its unit."""
-    if math.isnan(value):
-        return "none"
-    if math.isinf(value):
-        return NEVER
-    return f"{value:.6g} {unit}".strip()
 
 
 def _known(problem: Problem, limit: float) -> KnownReference:

@@ -263,9 +263,7 @@ class Table:
             notes.append(f"passed over: {', '.join(others)}")
         left_out = self.lines[~has_all]
         if len(left_out):
-            rows = f"{len(left_out)} rows"
-            if len(left_out) == 1:
-                rows = "1 row"
+            rows = n_rows(len(left_out))
             notes.append(f"left out {rows} without a number ({_named(left_out)})")
         message = "; ".join([*notes, *self.remarks])
         return Reading(numbers * np.array(sizes)[:, None], self.lines[has_all], message)
@@ -333,6 +331,13 @@ def _named(lines: Sequence[int] | Indices) -> str:
     numbers = ", ".join(str(line) for line in lines[:MOST_SAID])
     more = ", ..." if len(lines) > MOST_SAID else ""
     return f"lines {numbers}{more}"
+
+
+def n_rows(count: int) -> str:
+    """Text of a number of rows."""
+    if count == 1:
+        return "1 row"
+    return f"{count} rows"
 
 
 def read_table(

@@ -124,7 +124,8 @@ def beyond(
         near = newton.seek(newton.system, at, end)
         if near is None:
             continue
-        if newton.stability.is_stable(near, end):
+        # A solution is stable where its own branch continues to it.
+        if newton.stability.continues(near, near, end):
             return near, has_others
         has_others = True
         if _are_equal(at.slip, before.slip):

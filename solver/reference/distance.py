@@ -64,7 +64,7 @@ class Distance:
         """Prepare the distance, with a load of shape (n, n_instants), N."""
         rules = rules_of(problem)
         self._weights = problem.time_weights
-        self._determinate = _determinate_forces(problem, rules)
+        self._determinate = determinate_forces(problem)
         self._held = held_instants(problem, reference.contact_force)
         dofs = np.unique(problem.row_dofs)
         self._dofs: Indices = dofs[~problem.is_turn[dofs]]
@@ -217,11 +217,7 @@ def determinate_forces(problem: Problem) -> Flags:
     determinate, nor is the friction that it carries; friction of a known bound is while
     it slips. Forces that can balance each other (`solver.reference.glued`) are not.
     """
-    return _determinate_forces(problem, rules_of(problem))
-
-
-def _determinate_forces(problem: Problem, rules: Rules) -> Flags:
-    """Flags of determinate contact forces, as `determinate_forces`, by the rules."""
+    rules = rules_of(problem)
     dofs, displacement = problem.prescribed
     free = np.ones(problem.n_dofs)
     free[dofs] = 0.0

@@ -299,8 +299,6 @@ def incremental_solver(
         If there is no solver, as the problem holds data that no solver reads, or
         continues another run.
     """
-    if problem.no_reference:
-        raise NoReferenceError(problem.no_reference)
     if problem.has_start:
         raise NoReferenceError(
             "Incremental solvers begin where nothing has slipped yet."

@@ -95,14 +95,17 @@ class _Program:
         motions: sparse.csc_array,
         unit: float,
         largest: float = 1.0,
+        stop: Callable[[], bool] = never,
     ) -> None:
         """Prepare what all instants share, with forces in a unit.
 
-        `largest` is the largest share of a step that is looked at.
+        `largest` is the largest share of a step that is looked at; `stop` is asked
+        before each program.
         """
         self._rules = rules_of(problem)
         rules = self._rules
         self._unit = unit
+        self._stop = stop
         self._balance = sparse.csc_array((jumps(problem) @ motions).T)
         self._rubs: Indices = np.flatnonzero(~rules.normal)
         # Slip may harden: what friction can ever carry is a bound whatever has slipped.
@@ -134,34 +137,12 @@ class _Program:
         cone = sparse.vstack([along - carried, -along - carried, capped, -capped])
         return sparse.hstack([cone, sparse.csr_array((cone.shape[0], 1))])
 
-    def solve(
-        self, instant: int, before: Array, step: sparse.csr_array
-    ) -> scipy.optimize.OptimizeResult:
-        """Largest share of a step of the loads, (n_motions, 1), that contact balances.
+    def solve(self, instant: int, before: Array, step: Array) -> tuple[float, Array]:
+        """Largest share of a step of the loads that contact balances, and its dual.
 
-        With the loads before the step, shape (n_motions,).
-
-        Raises
-        ------
-        NoReferenceError
-            If HiGHS finds no answer.
-        """
-        known = self._strongest * self._rules.bound_at(instant)[self._rubs] / self._unit
-        program = scipy.optimize.linprog(
-            self._aim,
-            A_ub=self._limits,
-            b_ub=np.concatenate([known, known, self._caps]),
-            A_eq=sparse.hstack([self._balance, step]),
-            b_eq=-before,
-            bounds=self._bounds,
-            method="highs",
-        )
-        if program.status not in (0, INFEASIBLE):
-            raise NoReferenceError(f"limit analysis has no answer: {program.message}")
-        return program
-
-    def holds(self, instant: int, load: Array, stop: Callable[[], bool]) -> bool:
-        """Check whether contact certainly balances a load, (n_motions,).
+        With the loads before the step and the step, shape (n_motions,) each. The dual,
+        (n_motions,), is of the motions that the loads do work on. Both are zero where
+        nothing balances the loads before the step.
 
         Raises
         ------
@@ -170,13 +151,23 @@ class _Program:
         NoReferenceError
             If HiGHS finds no answer.
         """
-        if stop():
+        if self._stop():
             raise Interrupted
-        step = sparse.csr_array(load[:, None])
-        balanced = self.solve(instant, np.zeros(len(load)), step)
-        if balanced.status == INFEASIBLE:
-            return False
-        return float(balanced.x[-1]) >= SURE
+        known = self._strongest * self._rules.bound_at(instant)[self._rubs] / self._unit
+        program = scipy.optimize.linprog(
+            self._aim,
+            A_ub=self._limits,
+            b_ub=np.concatenate([known, known, self._caps]),
+            A_eq=sparse.hstack([self._balance, sparse.csr_array(step[:, None])]),
+            b_eq=-before,
+            bounds=self._bounds,
+            method="highs",
+        )
+        if program.status == INFEASIBLE:
+            return 0.0, np.zeros_like(before)
+        if program.status:
+            raise NoReferenceError(f"limit analysis has no answer: {program.message}")
+        return float(program.x[-1]), program.eqlin.marginals
 
 
 def collapse_of(problem: Problem, stop: Callable[[], bool] = never) -> Collapse | None:
@@ -195,27 +186,22 @@ def collapse_of(problem: Problem, stop: Callable[[], bool] = never) -> Collapse 
         return None
     motions = sparse.csc_array(problem.rigid_motions)
     loads = motions.T @ external_force(problem)
-    unit = float(np.abs(loads).max(initial=0.0)) or 1.0
-    program = _Program(problem, motions, unit)
+    unit = largest_size(loads) or 1.0
+    program = _Program(problem, motions, unit, stop=stop)
     before = np.zeros(len(loads))
     path = loads.T / unit
     ends = _ends_of_line(problem, path)
     # Mostly nothing collapses: for proportional loads two linear programs show that.
-    if ends and all(program.holds(end, path[end], stop) for end in ends):
+    if ends and all(program.solve(end, before, path[end])[0] >= SURE for end in ends):
         return None
     for instant, now in enumerate(path):
-        step = sparse.csr_array((now - before)[:, None])
+        step = now - before
         # The load stands still: what held an instant before holds on.
-        if not step.nnz and instant:
+        if instant and not step.any():
             continue
-        if stop():
-            raise Interrupted
-        balanced = program.solve(instant, before, step)
-        share = 0.0
-        if balanced.status != INFEASIBLE:
-            share = float(balanced.x[-1])
+        share, dual = program.solve(instant, before, step)
         if share < WHOLE:
-            return _collapse_at(problem, instant, share, balanced)
+            return _collapse_at(problem, instant, share, dual)
         before = now
     return None
 
@@ -256,37 +242,26 @@ def load_factors(problem: Problem, without: Problem) -> Array:
     motions = sparse.csc_array(problem.rigid_motions)
     others = motions.T @ external_force(without)
     loads = motions.T @ external_force(problem) - others
-    unit = float(np.abs(others).max(initial=0.0)) or 1.0
+    unit = largest_size(others) or 1.0
     program = _Program(problem, motions, unit, MOST)
     for instant in np.flatnonzero(loads.any(axis=0)).tolist():
         # In units of their own, as a small load has a large factor.
-        size = float(np.abs(loads[:, instant]).max())
-        step = sparse.csr_array(loads[:, instant, None] / size)
-        balanced = program.solve(instant, others[:, instant] / unit, step)
-        if balanced.status == INFEASIBLE:
-            factors[instant] = 0.0
-        elif balanced.x[-1] < MOST:
-            factors[instant] = float(balanced.x[-1]) * unit / size
+        size = largest_size(loads[:, instant])
+        step = loads[:, instant] / size
+        share, _ = program.solve(instant, others[:, instant] / unit, step)
+        if share < MOST:
+            factors[instant] = share * unit / size
     return factors
 
 
-def _collapse_at(
-    problem: Problem,
-    instant: int,
-    share: float,
-    balanced: scipy.optimize.OptimizeResult,
-) -> Collapse:
+def _collapse_at(problem: Problem, instant: int, share: float, dual: Array) -> Collapse:
     """Collapse at a share of the step to an instant; the mechanism is the dual."""
     times = problem.instants
     first = times[max(instant - 1, 0)]
     time = float(first + share * (times[instant] - first))
     assert problem.rigid_motions is not None
-    shares = np.zeros(problem.rigid_motions.shape[1])
-    if balanced.status != INFEASIBLE:
-        shares = balanced.eqlin.marginals
-    # The multipliers of the balance are the motions that the loads do work on.
-    moved = -problem.rigid_motions @ shares
-    mechanism = moved / (np.abs(moved).max(initial=0.0) or 1.0)
+    moved = -problem.rigid_motions @ dual
+    mechanism = moved / (largest_size(moved) or 1.0)
     return Collapse(time, instant, share, mechanism, _motion_of(problem, mechanism))
 
 

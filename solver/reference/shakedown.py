@@ -74,10 +74,13 @@ def driven_limit(problem: Problem, cycle: slice) -> float:
     compliance = rules.compliance[driven, None]
     if not compliance.all():
         return 0.0
-    shape = (len(driven), problem.n_instants)
-    bound = np.broadcast_to(rules.bound[driven], shape)[:, cycle]
-    scale = largest_size(bound) or 1.0
-    return _limit_of_points(jump[is_moved] / compliance / scale, bound / scale)
+    bound = _bound_in(cycle, rules.bound[driven], problem)
+    return _limit_of_points(jump[is_moved] / compliance, bound)
+
+
+def _bound_in(cycle: slice, bound: Array, problem: Problem) -> Array:
+    """Bounds of points at the instants of a cycle, (n_points, n_instants), scaled."""
+    return np.broadcast_to(bound, (len(bound), problem.n_instants))[:, cycle]
 
 
 def shakedown_limit(problem: Problem, cycle: slice) -> float:
@@ -110,12 +113,7 @@ def shakedown_limit(problem: Problem, cycle: slice) -> float:
         residual[np.ix_(free, free)], residual[np.ix_(free, rubs)]
     ).T
     elastic = elastic[rubs] - carried @ elastic[free]
-    shape = (len(rubs), problem.n_instants)
-    bound = np.broadcast_to(rules.bound[rubs], shape)[:, cycle]
-    # HiGHS works with absolute tolerances, so numbers are brought near 1.
-    scale = float(bound.max(initial=0.0)) or 1.0
-    elastic = elastic / scale
-    bound = bound / scale
+    bound = _bound_in(cycle, rules.bound[rubs], problem)
     if rings.shape[1]:
         limit = _limit_in_rings(elastic, bound, rings[rubs])
     else:
@@ -159,10 +157,11 @@ def _limit_of_points(elastic: Array, bound: Array) -> float:
     Forces of the loads and bounds have the shape (n_points, n_instants), scaled.
     """
     factor = np.inf
+    felt = FELT * (largest_size(bound) or 1.0)
     # Slip that stays shifts all instants alike: only differences between two are fixed.
     for force, limit in zip(elastic.T, bound.T, strict=True):
         swing = np.abs(elastic - force[:, None])
-        is_felt = swing > FELT
+        is_felt = swing > felt
         room = (bound + limit[:, None])[is_felt] / swing[is_felt]
         factor = min(factor, float(room.min(initial=np.inf)))
     return factor
@@ -175,15 +174,17 @@ def _limit_in_rings(elastic: Array, bound: Array, rings: Array) -> float:
     round rings (n_points, n_stresses).
     """
     size, count = elastic.shape
+    # HiGHS works with absolute tolerances, so numbers are brought near 1.
+    scale = largest_size(bound) or 1.0
     within = sparse.hstack(
         [
             sparse.kron(sparse.eye_array(size), np.ones((count, 1))),
-            elastic.reshape(-1, 1),
+            elastic.reshape(-1, 1) / scale,
             sparse.kron(rings, sparse.eye_array(count)),
         ]
     )
     solution = _largest(
-        size, sparse.vstack([within, -within]), np.tile(bound.ravel(), 2)
+        size, sparse.vstack([within, -within]), np.tile(bound.ravel() / scale, 2)
     )
     if solution.status == UNBOUNDED:
         return np.inf

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from hashlib import blake2b
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from solver.arrays import Array
+from solver.cache import content_of
 from solver.discrete.contacts import ContactFields
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force, jumps
@@ -105,30 +105,26 @@ def fingerprint(problem: Problem) -> bytes:
     scales = problem.scales
     rules = rules_of(problem)
     laws = problem.contacts.laws
-    entries: list[ArrayLike] = []
-    for matrix in (assembled_stiffness(problem), jumps(problem)):
-        # Equal matrices may store their entries in another order.
-        matrix.sort_indices()
-        entries += [matrix.indptr, matrix.indices, matrix.data]
+    stiffness = assembled_stiffness(problem)
+    all_jumps = jumps(problem)
+    # Equal matrices may store their entries in another order.
+    stiffness.sort_indices()
+    all_jumps.sort_indices()
+    kinds = [f"{key} {law.opens} {law.is_on_support}" for key, law in laws.items()]
     of_jumps = [getattr(rules, name) for name in OF_JUMPS]
     positions = [law.positions for law in laws.values()]
-    parts: list[ArrayLike] = [
-        [f"{name} {law.opens} {law.is_on_support}" for name, law in laws.items()],
-        list(problem.contacts),
-        [scales.displacement, scales.force, scales.time],
+    fields = [
+        np.array(kinds),
+        np.array(list(problem.contacts)),
+        np.array([scales.displacement, scales.force, scales.time]),
         problem.instants,
         problem.positions,
         force,
         *problem.prescribed,
         *of_jumps,
-        [rules.slip_factor.slips, rules.slip_factor.factors],
-        *entries,
+        np.array([rules.slip_factor.slips, rules.slip_factor.factors]),
         *positions,
-        [] if problem.rest is None else problem.rest,
     ]
-    digest = blake2b(digest_size=16)
-    for part in map(np.asarray, parts):
-        # Type and shape, too: equal bytes may be other numbers.
-        digest.update(f"{part.dtype.str} {part.shape}".encode())
-        digest.update(part.tobytes())
-    return digest.digest()
+    if problem.rest is not None:
+        fields.append(problem.rest)
+    return content_of(*fields, stiffness, all_jumps)

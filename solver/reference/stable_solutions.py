@@ -28,10 +28,6 @@ class Stability:
         self._rules = condensed.rules
         self._friction_law = friction_law
 
-    def is_stable(self, at: InstantSolution, right_sides: RightSides) -> bool:
-        """Check whether a solution is stable: no further slip releases energy."""
-        return self.continues(at, at, right_sides)
-
     def continues(
         self, at: InstantSolution, reached: InstantSolution, right_sides: RightSides
     ) -> bool:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from solver.arrays import Flags
 from solver.files.amounts import Unit, unit_of
 from solver.files.disk import write
 from solver.files.saved import dump
@@ -105,13 +106,9 @@ def messages(fit: Fit, called: Mapping[str, Called] | None = None) -> list[str]:
 
 def _lost(fit: Fit, called: Mapping[str, Called]) -> list[str]:
     """Sentence on settings that are not determined, if any."""
-    lost = []
-    for name, error in zip(fit.names, fit.errors, strict=True):
-        if math.isinf(error):
-            lost.append(called[name].name)
-    if not lost:
+    names = _named(fit, np.isinf(fit.errors), called)
+    if not names:
         return []
-    names = listed(lost)
     if fit.together:
         return [
             f"The loop does not tell {names} apart: they stay as near to where they "
@@ -125,17 +122,22 @@ def _lost(fit: Fit, called: Mapping[str, Called]) -> list[str]:
 
 def _for_the_mesh(fit: Fit, called: Mapping[str, Called]) -> list[str]:
     """Sentence on settings that errors of the mesh hide, if any."""
-    hidden = []
-    for name, is_hidden in zip(fit.names, fit.for_the_mesh, strict=True):
-        if is_hidden:
-            hidden.append(called[name].name)
+    hidden = _named(fit, fit.for_the_mesh, called)
     if not hidden:
         return []
     return [
         f"With elements of half the size the loop changes by {100.0 * fit.mesh:.2g} % "
-        f"of its range, and {listed(hidden)} may change by more than a factor of "
+        f"of its range, and {hidden} may change by more than a factor of "
         f"{FACTOR:g} for that: more elements may tell more."
     ]
+
+
+def _named(fit: Fit, are_meant: Flags, called: Mapping[str, Called]) -> str:
+    """List of the settings that are meant, by a mask of shape (p,); "" of none."""
+    if not are_meant.any():
+        return ""
+    names = np.array([called[name].name for name in fit.names])
+    return listed(names[are_meant].tolist())
 
 
 def known(combination: Combination, called: Mapping[str, Called]) -> str:

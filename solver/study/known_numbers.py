@@ -11,10 +11,8 @@ import scipy
 
 from solver.arrays import Array
 from solver.discrete.contacts import NO_SLIP
-from solver.discrete.plane.makers.band import Band
 from solver.discrete.probes import LoopFields, reaction, reaction_moment
 from solver.discrete.problem import Problem
-from solver.discrete.rods.rods import Rods
 from solver.discrete.structure import Loop
 from solver.latin import Solution
 from solver.laws import Contact
@@ -113,10 +111,8 @@ def _area(force: Array, over: Array, start: int) -> float:
 def opening(answer: SolvedCase) -> Iterator[Number]:
     """Opening of the break of a wire, known and found."""
     strand = answer.settings.structure()
-    assert isinstance(strand, Rods)
     exact = broken_wire(strand)
     assert exact is not None
-    assert strand.broken is not None
     wire, node = strand.broken
     # Both nodes of the break stand one after the other.
     before = (wire - 1) * (strand.elements + 1) + node
@@ -157,9 +153,17 @@ def _pressed(law: Contact, force: Array, exact: HalfPlane) -> Iterator[Number]:
     """
     lengths, distances = _points(law, force)
     yield "largest pressure", "Pa", exact.peak, float((force / lengths).max())
-    # Half the width is twice the root of the second moment of an elliptic pressure.
-    second = float(force @ distances**2 / force.sum())
-    yield "half-width of contact", "m", exact.half_width, 2.0 * float(np.sqrt(second))
+    found = _half_width(distances, force)
+    yield "half-width of contact", "m", exact.half_width, found
+
+
+def _half_width(distances: Array, force: Array) -> float:
+    """Half-width of an elliptic distribution of forces, m, by their second moment.
+
+    A count of nodes would be coarse. The distances from the middle, m, and the forces
+    have the shape (n_points,).
+    """
+    return float(2.0 * np.sqrt(force @ distances**2 / force.sum()))
 
 
 def sheared_parabola(answer: SolvedCase) -> Iterator[Number]:
@@ -179,33 +183,13 @@ def _peak_of_shear(answer: SolvedCase, first: int) -> Iterator[Number]:
     lengths, distances = _points(answer.problem.contacts["support"], pressed)
     exact = _half_plane(answer, float(pressed.sum()))
     share = float(held.sum()) / (friction * float(pressed.sum()))
-    stuck = _stick_half_width(friction, distances, pressed, held)
+    # Friction lacks an ellipse as wide as the stick zone to its bound.
+    stuck = _half_width(distances, friction * pressed - held)
     yield "half-width of stick", "m", exact.stuck(share), stuck
     middle = int(np.argmax(pressed))
     tractions = exact.traction(distances[middle : middle + 1], friction, share)
     found = held[middle] / lengths[middle]
     yield "shear traction in the middle", "Pa", float(tractions[0]), found
-
-
-def _stick_half_width(
-    friction: float, distances: Array, pressed: Array, held: Array
-) -> float:
-    """Half-width of stick, m, by the second moments of pressure and friction.
-
-    Both are taken as of two square roots: a count of nodes would be coarse.
-
-    Parameters
-    ----------
-    friction
-        Coefficient of friction mu.
-    distances
-        Distances of the points from the middle, shape (n_points,), m.
-    pressed, held
-        Sizes of pressing force and friction, same shape, N/m.
-    """
-    reserve = friction * float(pressed.sum()) - held.sum()
-    moments = friction * float(distances**2 @ pressed) - float(distances**2 @ held)
-    return float(2.0 * np.sqrt(moments / reserve))
 
 
 def _energy_of_shear(answer: SolvedCase, first: int) -> Number:
@@ -361,9 +345,7 @@ def arch_thrust(answer: SolvedCase) -> Iterator[Number]:
     """
     moved, thrust = answer.loop.along(answer.fields)
     weight = answer.settings.structure().downwards[-1]
-    bounds = answer.settings.statics.thrusts()
-    assert bounds is not None
-    known, largest = bounds
+    known, largest = answer.settings.statics.thrusts()
     if moved[-1] < 0.0:
         known = largest
     yield "thrust over weight", "", known, float(thrust[-1] / weight)
@@ -374,7 +356,6 @@ def tensions(answer: SolvedCase) -> Iterator[Number]:
     curves = answer.settings.exact(answer.problem, answer.fields)
     (exact,) = [curve for curve in curves if curve.of == "axial force"]
     band = answer.settings.structure()
-    assert isinstance(band, Band)
     found = band.tensions(answer.problem, answer.fields)[:, -1]
     known = exact.up[:, -1]
     # The spans carry the tensions of the ends.
@@ -399,8 +380,6 @@ def pressed_wires(answer: SolvedCase) -> Iterator[Number]:
 def moved_end(answer: SolvedCase) -> Iterator[Number]:
     """Force that moves an end of a rod with a free other end: sqrt(2 E S mu p u)."""
     rods = answer.settings.structure()
-    assert isinstance(rods, Rods)
-    assert rods.right.displacement is not None
     strength = float(rods.strength.max())
     known = np.sqrt(
         2.0 * rods.stiffness * strength * float(rods.right.displacement[-1])

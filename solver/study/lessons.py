@@ -27,7 +27,7 @@ from solver.settings.scene import Settings
 from solver.settings.values import SettingError
 from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun
-from solver.study.quantities.quantity import Quantity
+from solver.study.quantities.quantity import Quantity, written
 from solver.study.scene_run import finished_run
 
 SUBJECTS = "mechanics", "method"
@@ -78,22 +78,15 @@ class Claim:
         quantity = self.quantity
         value = self.quantity(run)
         holds = self.low <= value <= self.high
-        words = _written(value, quantity.unit)
+        words = written(value, quantity.unit, 4)
         if quantity.when is not None:
             # What a learner sees in the plots must not contradict the claim.
             seen = quantity.of(run, round(share * (run.problem.n_instants - 1)))
             if not self.low <= seen <= self.high:
                 holds = False
-                at_plots = _written(seen, quantity.unit)
+                at_plots = written(seen, quantity.unit, 4)
                 words += f", but {at_plots} at the instant of the plots"
         return holds, f"{quantity.title}: {words}; expected {self.expected}"
-
-
-def _written(value: float, unit: str) -> str:
-    """Text of a value with its unit."""
-    if math.isinf(value):
-        return "never"
-    return f"{value:.4g} {unit}".strip()
 
 
 @dataclass(frozen=True, eq=False)

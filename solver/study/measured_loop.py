@@ -19,6 +19,7 @@ the ends of a branch they are compared with its ends.
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -31,7 +32,7 @@ from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Axes, Loop
 from solver.files.columns import TableColumn, quantities_of_axis
-from solver.files.tables import Table
+from solver.files.tables import Table, n_rows
 from solver.files.units import size_in, unit_doubt
 from solver.settings.values import SettingError
 from solver.study.comparison import FEWEST, check_count, in_si
@@ -62,9 +63,8 @@ class MeasuredLoop:
         Units of displacement and force.
     source, message
         Name of the file, and how its columns were understood.
-    bare
-        Names of the columns of displacement and force where the file gives no unit,
-        else empty.
+    names
+        Names of the columns of displacement and force in the file.
     given
         Units of displacement, force and time in the file, empty where it gives none.
     """
@@ -75,7 +75,7 @@ class MeasuredLoop:
     units: tuple[str, str]
     source: str
     message: str
-    bare: tuple[str, str] = ("", "")
+    names: tuple[str, str] = ("", "")
     given: tuple[str, str, str] = ("", "", "")
 
     def doubts(self, displacement: Array, force: Array) -> list[str]:
@@ -103,8 +103,8 @@ class MeasuredLoop:
         measured = (self.displacement, self.force)
         of_run = (displacement, force)
         doubts = []
-        for column, name in enumerate(self.bare):
-            if not name:
+        for column, name in enumerate(self.names):
+            if not name or self.given[column]:
                 continue
             size = float(np.ptp(measured[column]))
             expected = float(np.ptp(of_run[column]))
@@ -139,10 +139,10 @@ def _in_own(name: str, values: Array, si: str, own: str) -> dict[str, Array]:
 
 def csv_of(columns: Mapping[str, Array]) -> str:
     """Columns of numbers, shape (n_rows,) each, by their heads, as CSV."""
-    lines = [",".join(columns)]
-    for row in zip(*columns.values(), strict=True):
-        lines.append(",".join(f"{value:.10g}" for value in row))
-    return "\n".join([*lines, ""])
+    text = io.StringIO()
+    rows = np.column_stack([*columns.values()])
+    np.savetxt(text, rows, "%.10g", ",", header=",".join(columns), comments="")
+    return text.getvalue()
 
 
 def columns_of(
@@ -201,7 +201,7 @@ def loop_in(table: Table, axes: Axes) -> MeasuredLoop:
         units=(across_unit, up_unit),
         source=table.source,
         message=message,
-        bare=(_bare(across), _bare(up)),
+        names=(across.name, up.name),
         given=(across.unit, up.unit, time.unit if time else ""),
     )
 
@@ -209,19 +209,9 @@ def loop_in(table: Table, axes: Axes) -> MeasuredLoop:
 def _check_rows(table: Table, title: str, values: Array) -> None:
     """Refuse values, (n_rows,), that are too few or all the same."""
     if len(values) < FEWEST:
-        rows = f"{len(values)} rows"
-        if len(values) == 1:
-            rows = "1 row"
-        raise table.refuse(f"it has {rows}: give at least {FEWEST}")
+        raise table.refuse(f"it has {n_rows(len(values))}: give at least {FEWEST}")
     if np.ptp(values) == 0.0:
         raise table.refuse(f"{title} has the same value in all rows")
-
-
-def _bare(column: TableColumn) -> str:
-    """Name of a column without a unit; empty for a column with a unit."""
-    if column.unit:
-        return ""
-    return column.name
 
 
 class LoopComparison:

@@ -12,16 +12,14 @@ import numpy as np
 
 from solver.latin import Ending, Iterate, Solution
 from solver.latin.end.certified import Answer
-from solver.latin.end.status_step import states_of, status_step
-from solver.reference.assembly import Interrupted, NoReferenceError
+from solver.latin.end.status_step import states_of
 from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental_solver
 from solver.reference.law_residuals import LawResiduals, RowFields, law_residuals
 from solver.reference.solution import Reference
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.study.known_reference import known_reference
-from solver.study.scene_run import BROKEN, REFUSED, finished_run
+from solver.study.scene_run import BROKEN, REFUSED, certified_near, finished_run
 
 LONGEST = 60.0
 """Time limit of a run, of its reference, and of the search for a solution near it, s: a
@@ -136,9 +134,9 @@ def _beside_reference(outcome: Outcome, iterate: Iterate) -> Outcome:
     if is_settled or outcome.ending != Ending.CONVERGED:
         return replace(beside, doubt=doubt or beside.doubt)
     # Friction may leave several solutions, of which an iterate may come to another.
-    other = _solution_near(iterate)
+    other = certified_near(iterate.problem, states_of(iterate), _alarm())
     if other is not None:
-        near = _compared(outcome, iterate, other)
+        near = _compared(outcome, iterate, other.solution)
         obeys = near.reference_laws <= AT_ROUNDING
         if obeys and near.error_force < beside.error_force:
             return replace(near, doubt=doubt)
@@ -157,21 +155,6 @@ def _compared(outcome: Outcome, iterate: Iterate, solution: Reference) -> Outcom
         reference_laws=of_solution.largest,
         doubt=_doubt(outcome.laws, of_solution, error),
     )
-
-
-def _solution_near(iterate: Iterate) -> Reference | None:
-    """Solution by a status step from the states of an iterate, or None."""
-    stop = _alarm()
-    try:
-        solver = incremental_solver(iterate.problem, stop)
-        found, certificate = status_step(
-            solver, iterate.problem, states_of(iterate), stop=stop
-        )
-    except (NoReferenceError, Interrupted):
-        return None
-    if certificate is None:
-        return None
-    return found
 
 
 def _doubt(laws: float, of_reference: LawResiduals, error: float) -> str:

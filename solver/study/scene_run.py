@@ -11,7 +11,7 @@ from solver.latin import Answer, Decision, Solution, record, solve
 from solver.latin.end.certified import certified_answer
 from solver.latin.end.cost import costs_of
 from solver.latin.end.status import certified
-from solver.latin.end.status_step import status_step
+from solver.latin.end.status_step import Certificate, status_step
 from solver.reference.assembly import Interrupted, NoReferenceError, never
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental_solver
@@ -132,12 +132,7 @@ def neighbour(
     costs = costs_of(problem, states)
     if not costs.afford(ALONE) or _may_have_others(problem):
         return None
-    try:
-        solver = incremental_solver(problem, stop)
-        limit = costs.systems(ALONE)
-        _, certificate = status_step(solver, problem, states, limit, stop)
-    except (NoReferenceError, Interrupted):
-        return None
+    certificate = certified_near(problem, states, stop, costs.systems(ALONE))
     if certificate is None or certificate.residual > settings.accuracy:
         return None
     if certificate.solution.ambiguous.any():
@@ -148,6 +143,25 @@ def neighbour(
     status = certified(answer, certificate)
     seconds = spent + time.perf_counter() - began
     return answer, Decision(seconds, certificate.residual, status, certificate)
+
+
+def certified_near(
+    problem: Problem,
+    states: States,
+    stop: Callable[[], bool],
+    most: int | None = None,
+) -> Certificate | None:
+    """Certified solution by one status step from states; None where it finds none.
+
+    The states are as of `states_of`, shape (n_forces, n_instants). The step is given up
+    where `stop` returns True, and after `most` linear systems.
+    """
+    try:
+        solver = incremental_solver(problem, stop)
+        _, certificate = status_step(solver, problem, states, most, stop)
+    except (NoReferenceError, Interrupted):
+        return None
+    return certificate
 
 
 def _may_have_others(problem: Problem) -> bool:

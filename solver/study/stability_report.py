@@ -73,20 +73,10 @@ def summary(runs: Sequence[Row]) -> str:
     return f"{sum(map(passed, runs))} of {len(runs)} runs pass."
 
 
-def counts(runs: Sequence[Row]) -> list[list[str]]:
-    """Rows of the number of runs by verdict and its meaning, below a head."""
-    return _counted(runs, "verdict", MEANING)
-
-
-def judges(runs: Sequence[Row]) -> list[list[str]]:
-    """Numbers of runs by judge, as `counts`."""
-    return _counted(runs, "judged_by", JUDGES)
-
-
-def _counted(
+def counted(
     runs: Sequence[Row], column: str, meaning: Mapping[str, str]
 ) -> list[list[str]]:
-    """Numbers of runs by the values of a column, with the meaning of each value."""
+    """Numbers of runs by the values of a column and their meaning, below a head."""
     numbers = Counter(run[column] for run in runs)
     rows = [[column.replace("_", " "), "runs", "what it means"]]
     for name, text in meaning.items():
@@ -96,7 +86,8 @@ def _counted(
 
 def last_lines(runs: Sequence[Row]) -> list[str]:
     """Last lines on a console: counts, notes, and commands of runs that fail."""
-    tables = [aligned(counts(runs)), "", aligned(judges(runs))]
+    by_verdict = aligned(counted(runs, "verdict", MEANING))
+    tables = [by_verdict, "", aligned(counted(runs, "judged_by", JUDGES))]
     lines = ["", summary(runs), *tables, "", *NOTES]
     for run in runs:
         if not passed(run):
@@ -125,8 +116,8 @@ def write_stability(runs: Sequence[Row], folder: Path) -> None:
         [],
         title="Stability on extreme or random runs",
         summary=summary(runs),
-        counts=counts(runs),
-        judges=judges(runs),
+        counts=counted(runs, "verdict", MEANING),
+        judges=counted(runs, "judged_by", JUDGES),
         notes=NOTES,
         names=[column.replace("_", " ") for column in short],
         runs=shown,

@@ -104,7 +104,5 @@ def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Jud
     if outcome.doubt:
         return Judgement(Verdict.UNCLEAR, Judge.NOTHING)
     if has_reference:
-        by = Judge.REFERENCE
-    else:
-        by = Judge.NOTHING
-    return Judgement(Verdict.WRONG, by)
+        return Judgement(Verdict.WRONG, Judge.REFERENCE)
+    return Judgement(Verdict.WRONG, Judge.NOTHING)

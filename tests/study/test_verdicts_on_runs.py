@@ -29,8 +29,8 @@ from solver.study.stability import (
     judged_runs,
     row_of,
 )
-from solver.study.stability_report import COLUMNS, counts, judges, last_lines
-from solver.study.verdicts import Judge, Verdict, judge
+from solver.study.stability_report import COLUMNS, counted, last_lines
+from solver.study.verdicts import JUDGES, MEANING, Judge, Verdict, judge
 
 GOOD = Outcome(
     ending=Ending.CONVERGED,
@@ -233,7 +233,7 @@ def test_no_other_solution_is_sought_for_a_run_that_claims_nothing(monkeypatch):
     def sought(*_, **__):
         raise AssertionError("a status step was made")
 
-    monkeypatch.setattr("solver.study.outcomes.status_step", sought)
+    monkeypatch.setattr("solver.study.scene_run.status_step", sought)
     settings = draw("block", 99796577, 25)
     early = CATALOGUE["block"].checked({**settings.changed(), "max_iterations": 20})
     (row,) = judged_runs([random_case(early, 99796577, 25)])
@@ -279,10 +279,14 @@ def test_a_wrong_row_is_listed_with_what_repeats_it():
     assert wrong["command"] in text
     assert right["command"] not in text
     assert "1 of 2 runs pass" in text
-    judged = {name: runs for name, runs, _ in judges([wrong, right])[1:]}
-    assert judged == {"laws": "0", "reference": "2", "nothing": "0"}
-    counted = {verdict: runs for verdict, runs, _ in counts([wrong, right])[1:]}
-    assert counted == {
+    by_judge = counted([wrong, right], "judged_by", JUDGES)
+    assert {name: runs for name, runs, _ in by_judge[1:]} == {
+        "laws": "0",
+        "reference": "2",
+        "nothing": "0",
+    }
+    by_verdict = counted([wrong, right], "verdict", MEANING)
+    assert {name: runs for name, runs, _ in by_verdict[1:]} == {
         "right": "1",
         "unsolved": "0",
         "refused": "0",

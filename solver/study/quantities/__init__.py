@@ -18,9 +18,9 @@ import solver.study.quantities.holding_measures as holding
 import solver.study.quantities.reduction_measures as reductions
 import solver.study.quantities.run_measures as runs
 from solver.settings.values import SettingError
-from solver.study.quantities.quantity import Parameter, Quantity, by_name
+from solver.study.quantities.quantity import Parameter, Quantity
 
-QUANTITIES = by_name(
+_LISTED = (
     runs.iterations,
     runs.seconds,
     runs.converged,
@@ -87,6 +87,7 @@ QUANTITIES = by_name(
     cyclic.wire_work,
     cyclic.recovery_length,
 )
+QUANTITIES: dict[str, Quantity] = {each.name: each for each in _LISTED}
 """All quantities by name, in the order in which they are listed to people."""
 FORMER = {"energy": "dissipation", "slipping": "slipped_share"}
 """Former names of quantities, and the names that have replaced them."""

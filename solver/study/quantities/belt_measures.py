@@ -23,11 +23,16 @@ def _is_drum(settings: Settings) -> bool:
     return _is_belt(settings) and settings.values()["guide"] == "drum"
 
 
-def _ends(run: FinishedRun) -> tuple[Array, Array]:
-    """Tensions of the tail and of the pulled end, (n_instants,) each, N."""
+def _band(run: FinishedRun) -> Band:
+    """Structure of the settings of a band on a guide."""
     band = run.settings.structure()
     assert isinstance(band, Band)
-    tensions = band.tensions(run.problem, run.iterate)
+    return band
+
+
+def _ends(run: FinishedRun) -> tuple[Array, Array]:
+    """Tensions of the tail and of the pulled end, (n_instants,) each, N."""
+    tensions = _band(run).tensions(run.problem, run.iterate)
     return tensions[0], tensions[-1]
 
 
@@ -38,9 +43,7 @@ def _carried(run: FinishedRun) -> Array:
     """
     tail, pulled = _ends(run)
     values = run.settings.values()
-    band = run.settings.structure()
-    assert isinstance(band, Band)
-    stretched = np.abs(run.iterate.displacement).max() / band.guide.spacing
+    stretched = np.abs(run.iterate.displacement).max() / _band(run).guide.spacing
     terms = values["young"] * values["section"] * stretched
     return without_residue(pulled - tail, terms)
 

@@ -229,7 +229,11 @@ def residual_displacement(run: FinishedRun) -> float:
 )
 def stiffness(run: FinishedRun) -> float:
     """Largest force of the loop over its displacement, N/m."""
-    instant = largest_load(run)
+    return secant(run, largest_load(run))
+
+
+def secant(run: FinishedRun, instant: int) -> float:
+    """Force of the loop over its displacement at an instant; NaN over zero."""
     displacement = float(run.displacement[instant])
     if displacement:
         return float(run.force[instant]) / displacement

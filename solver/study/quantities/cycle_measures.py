@@ -18,8 +18,8 @@ from solver.reference.shakedown import (
     slip_space,
 )
 from solver.settings.scene import Settings
-from solver.study.quantities.body_measures import is_rope
-from solver.study.quantities.contact_measures import are_clamped
+from solver.study.quantities.body_measures import is_rope, secant
+from solver.study.quantities.contact_measures import are_clamped, dissipation
 from solver.study.quantities.cycles import (
     cycle_ends,
     instants_of_cycle,
@@ -180,10 +180,7 @@ def slipping_bending(run: FinishedRun) -> float:
 )
 def bending_stiffness(run: FinishedRun, instant: int) -> float:
     """Moment at the largest curvature over that curvature, N m^2."""
-    curvature = float(run.displacement[instant])
-    if curvature:
-        return float(run.force[instant]) / curvature
-    return math.nan
+    return secant(run, instant)
 
 
 @quantity(
@@ -197,10 +194,7 @@ def energy_per_metre(run: FinishedRun, at: float | None) -> float:
 
     NaN near a clamp, and where the load has fewer cycles.
     """
-    instants = instants_of_cycle(run.settings, at)
-    if instants is None:
-        return math.nan
-    return float(run.dissipated[instants].sum()) / _rope(run.settings).drawn_length
+    return dissipation.of(run, at) / _rope(run.settings).drawn_length
 
 
 @quantity("Largest stress range of a wire in the last cycle", "Pa", applies=is_rope)

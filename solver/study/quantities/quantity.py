@@ -14,6 +14,15 @@ NEVER = "never"
 """Word on an infinite value: an event that never comes."""
 
 
+def written(value: float, unit: str, digits: int = 6) -> str:
+    """Text of a value with its unit."""
+    if math.isnan(value):
+        return "none"
+    if math.isinf(value):
+        return NEVER
+    return f"{value:.{digits}g} {unit}".strip()
+
+
 @dataclass(frozen=True)
 class Parameter:
     """Parameter of a quantity, as in `NAME@PARAMETER`; optional unless `needed`.
@@ -98,8 +107,3 @@ class Quantity:
 def quantity(title: str, unit: str = "", **options: Any) -> Callable[..., Quantity]:
     """Decorator: a function of a run becomes the quantity of its name."""
     return lambda of: Quantity(of.__name__, title, unit, of, **options)
-
-
-def by_name(*quantities: Quantity) -> dict[str, Quantity]:
-    """Table of quantities by their names, in the order given."""
-    return {each.name: each for each in quantities}

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 from solver.files.amounts import amount
 from solver.study.page import Chart, Map, Panel, PanelAxis, PanelCurve, Runs
 from solver.study.quantities.quantity import NEVER
@@ -166,9 +166,9 @@ def _runs(plan: Plan, rows: Sequence[Row], index: int) -> Runs:
     """Points of the runs on the chart of a quantity, with messages."""
     numbers = np.array([row.number for row in rows], dtype=int)
     levels = np.unravel_index(numbers, plan.shape)
-    factor, _ = _measure(plan, index)
+    factor, unit = _measure(plan, index)
     values = factor * np.array([row.values[index] for row in rows], dtype=float)
-    messages = _messages(plan, rows, index, values)
+    messages = _messages(plan, rows, np.transpose(levels), values, unit)
     is_finite = np.isfinite(values)
     values[~is_finite] = np.nan
     y = values
@@ -187,15 +187,15 @@ def _runs(plan: Plan, rows: Sequence[Row], index: int) -> Runs:
     )
 
 
-def _messages(plan: Plan, rows: Sequence[Row], index: int, values: Array) -> list[str]:
+def _messages(
+    plan: Plan, rows: Sequence[Row], points: Indices, values: Array, unit: str
+) -> list[str]:
     """Messages on runs: settings, the value of a quantity, and the ending.
 
-    The values are those of the reading, shape (n_rows,), in its unit.
+    With the numbers of the values of the settings, shape (n_rows, n_axes), and the
+    values of the quantity in its unit, shape (n_rows,).
     """
-    _, unit = _measure(plan, index)
     texts = [_texts(axis) for axis in plan.axes]
-    numbers = np.array([row.number for row in rows], dtype=int)
-    points = np.transpose(np.unravel_index(numbers, plan.shape))
     messages = []
     for row, value, point in zip(rows, values, points, strict=True):
         words = [names[level] for names, level in zip(texts, point, strict=True)]
