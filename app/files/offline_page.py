@@ -13,17 +13,11 @@ from bokeh.document import Document
 from bokeh.embed import file_html
 from bokeh.model import Model
 from bokeh.models import (
-    Axis,
-    ColorBar,
     CustomJS,
     DataRange1d,
     Div,
-    PointDrawTool,
     Slider,
-    Text,
-    Title,
 )
-from bokeh.plotting import figure
 from bokeh.resources import INLINE
 
 from app.charts import library
@@ -35,7 +29,7 @@ from app.views.layout import shape_of
 from app.views.pieces import PiecesView
 from app.views.rope import WireSection
 from app.views.scene import Scene
-from app.views.type_size import TEXT
+from app.views.type_size import TEXT, magnify
 from app.views.view import View
 from app.worker.cells import thinned
 from solver.files.amounts import unit_for, unit_of
@@ -182,10 +176,6 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
                 min_width=NARROWEST,
                 max_width=WIDEST,
             )
-            # Smaller than they are laid out: another machine may have no font but a
-            # wide one.
-            for glyph in plot.select(Text):
-                glyph.text_font_size = TEXT
         if isinstance(view, PiecesView):
             # Its words are not scaled either, and their lines are those of a phone.
             view.lay_out(NARROWEST, PIECES)
@@ -194,20 +184,10 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
             # Nobody tells its size either: there it stays in its place.
             ranges = {"x_range": DataRange1d(), "y_range": DataRange1d()}
             plot.update(match_aspect=True, **ranges)
-        _set_labels(plot)
-        plot.tools = [
-            tool for tool in plot.tools if not isinstance(tool, PointDrawTool)
-        ]
+        # Each theme has another type size. Words in a picture are smaller than they are
+        # laid out: another machine may have no font but a wide one.
+        magnify(plot, TEXT, TEXT)
     return copies
-
-
-def _set_labels(plot: figure) -> None:
-    """Set the type size of axes, titles and colour bars: each theme has another."""
-    for model in plot.references():
-        if isinstance(model, Axis | ColorBar | Title):
-            names = model.properties()
-            sizes = [name for name in names if name.endswith("text_font_size")]
-            model.update(**dict.fromkeys(sizes, TEXT))
 
 
 def _settings_table(settings: Settings) -> list[dict[str, str]]:
