@@ -145,11 +145,8 @@ def port() -> int:
 
 
 def _address() -> SplitResult:
-    """Address of this page without its query; "" outside of a page."""
-    location = pn.state.location
-    if location is None:
-        return urlsplit("")
-    return urlsplit(location.href.partition("?")[0])
+    """Address of this page without its query."""
+    return urlsplit(pn.state.location.href.partition("?")[0])
 
 
 def configure() -> None:

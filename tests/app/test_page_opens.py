@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import runpy
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,7 +16,6 @@ from bokeh.document import Document
 from bokeh.document.models import DocumentModelManager
 from bokeh.models import ImportedStyleSheet
 from bokeh.plotting import figure
-from panel.io.state import set_curdoc
 from panel.links import Callback
 from panel.util import edit_readonly
 
@@ -41,14 +40,6 @@ def orders(monkeypatch: pytest.MonkeyPatch) -> list[Order]:
     worker = SimpleNamespace(send=told.append, end=lambda: None, hangs=False)
     monkeypatch.setattr(app.supervisor, "Worker", lambda on_report, others: worker)
     return told
-
-
-@pytest.fixture
-def document() -> Iterator[Document]:
-    """A document whose page is being made."""
-    made = Document()
-    with set_curdoc(made):
-        yield made
 
 
 def test_a_first_run_goes_on_once_its_first_picture_is_painted(
