@@ -60,12 +60,8 @@ def rebuilt() -> Iterator[None]:
     After each change Bokeh goes through all models of the page, but here once.
     """
     document = pn.state.curdoc
-    with pn.io.hold(document):
-        if document is None:
-            yield
-        else:
-            with document.models.freeze():
-                yield
+    with pn.io.hold(document), document.models.freeze():
+        yield
 
 
 def explained(text: str, *terms: str) -> Markup:

@@ -16,7 +16,7 @@ from app.views.type_size import TEXT
 from solver.scenes import CATALOGUE
 
 
-@pytest.fixture
+@pytest.fixture(autouse=True)
 def document() -> Iterator[Document]:
     """A document whose page is being made."""
     made = Document()

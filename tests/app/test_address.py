@@ -194,7 +194,6 @@ def test_a_value_of_the_page_that_does_not_go_with_the_address_is_told() -> None
     assert place["settings"].substructures == 100
 
 
-@pytest.mark.usefixtures("document")
 def test_what_is_too_long_is_left_out_and_said_and_stays_while_the_page_does() -> None:
     path = tuple(
         (t, 900.0 * t * (1.0 - t)) for t in np.linspace(0.0, 1.0, 200).tolist()
@@ -207,7 +206,6 @@ def test_what_is_too_long_is_left_out_and_said_and_stays_while_the_page_does() -
     assert read(link, state.settings)[0]["settings"].load == path
 
 
-@pytest.mark.usefixtures("document")
 def test_going_back_brings_settings_back_and_leaves_no_new_address() -> None:
     state = PageState(default_settings("bar"))
     link = Link(state, Browser())
@@ -229,7 +227,6 @@ def test_going_back_to_a_class_opens_its_page() -> None:
     assert (state.settings.scene, state.room) == ("rope", "")
 
 
-@pytest.mark.usefixtures("document")
 def test_a_slider_that_is_dragged_writes_no_address_until_it_is_let_go() -> None:
     state = PageState(default_settings("bar"))
     link = Link(state, Browser())

@@ -222,7 +222,6 @@ def test_a_control_stands_in_its_sentence_and_not_on_paper() -> None:
     assert without_controls(text) == "It takes {value:iterations} iterations."
 
 
-@pytest.mark.usefixtures("document")
 def test_a_handout_asks_in_front_and_answers_overleaf(frame: Frame) -> None:
     lesson = LESSONS[NAME]
     state = PageState(frame.run.settings, lesson=NAME, frame=frame)

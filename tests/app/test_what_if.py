@@ -11,7 +11,6 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from bokeh.document import Document
 from small_scenes import SMALL
 from sweeps import TINY, Here
 
@@ -344,7 +343,7 @@ class Done:
 
 
 @pytest.fixture
-def made(monkeypatch: pytest.MonkeyPatch, document: Document) -> reports.Reports:
+def made(monkeypatch: pytest.MonkeyPatch) -> reports.Reports:
     """The tab, of a server whose commands are over at once."""
     monkeypatch.setattr(reports, "Job", Done)
     return reports.Reports(PageState(tiny(), tab="Reports"))
