@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import panel as pn
 from bokeh.document import Document
 from bokeh.embed import file_html
 from bokeh.model import Model
@@ -106,7 +105,6 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
     slider.js_on_change("value", _replay(page, len(columns), show))
     # The page begins with the selected instant.
     show(selected)
-    is_dark = pn.config.theme == "dark"
     return file_html(
         page,
         INLINE,
@@ -114,7 +112,7 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
         template=TEMPLATES.get_template("files/export.html"),
         template_variables={
             "library": library("bokeh-widgets"),
-            "is_dark": is_dark,
+            "is_dark": state.is_dark,
             "widest": WIDEST,
             "sentence": run.sentence,
             "status": status_line(state),
@@ -124,7 +122,7 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
             "settings": _settings_table(run.settings),
             "saved": dump(run.settings),
         },
-        theme="dark_minimal" if is_dark else None,
+        theme="dark_minimal" if state.is_dark else None,
         # Handlers of drags and taps do nothing there.
         suppress_callback_warning=True,
     )
