@@ -256,11 +256,8 @@ class Frame:
         return self.iteration + self.is_answer
 
     def last(self, name: str) -> float:
-        """The newest value of a scalar of the history; NaN without any."""
-        values = self.history[name]
-        if len(values):
-            return float(values[-1])
-        return float("nan")
+        """The newest value of a scalar of the history."""
+        return float(self.history[name][-1])
 
     @property
     def error(self) -> float:

@@ -20,7 +20,7 @@ from bokeh.models import (
 from bokeh.resources import INLINE
 
 from app.charts import library
-from app.frame import Run, Selection
+from app.frame import Run
 from app.state import PageState
 from app.status import figures_line, status_line
 from app.templates import TEMPLATES
@@ -94,7 +94,8 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
     page = _document(copies, slider=slider, instant=instant, figures=figures)
 
     def show(number: int) -> None:
-        selection = _at(state.selection, run, columns[number])
+        phase = float(run.instants[columns[number]] / run.instants[-1])
+        selection = replace(state.selection, phase=phase)
         instant.text = _instant(run, columns[number])
         figures.text = figures_line(frame, selection)
         for view in copies:
@@ -126,14 +127,6 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
         # Handlers of drags and taps do nothing there.
         suppress_callback_warning=True,
     )
-
-
-def _at(selection: Selection, run: Run, column: int) -> Selection:
-    """A selection at the instant of a column of the run."""
-    phase = 0.0
-    if run.instants[-1]:
-        phase = float(run.instants[column] / run.instants[-1])
-    return replace(selection, phase=phase)
 
 
 def _instant(run: Run, column: int) -> str:

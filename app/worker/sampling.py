@@ -207,8 +207,6 @@ class Sampler:
         contacts = self.problem.contacts
         # Springs are next to the surfaces, and neither stick nor slip.
         status = iterate.status[contacts.on_surfaces]
-        if not len(status):
-            return np.zeros(len(self.columns))
         slips = np.abs(status[:, self.columns]) == 1
         # One wire of a layer may stand for all of them.
         copies = contacts.copies[contacts.on_surfaces]
