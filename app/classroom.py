@@ -52,11 +52,6 @@ class Classroom:
         self.opened = ""
 
     @property
-    def is_alone(self) -> bool:
-        """Check whether no page leads at present."""
-        return self.leader is None
-
-    @property
     def is_over(self) -> bool:
         """Check whether the class was ended, or its leader stayed away."""
         return self._gone_at is not None and time.monotonic() - self._gone_at > KEPT
@@ -329,7 +324,7 @@ class ClassMember(param.Parameterized):
         _update(state, values)
         self.message = self._sentence(room)
         # Nobody else tells a page that the class of an absent leader is over.
-        if room.is_alone and not room.is_over:
+        if room.leader is None and not room.is_over:
             self._document.add_timeout_callback(self._take, int(1000 * KEPT) + 1000)
 
     def _sentence(self, room: Classroom) -> str:
@@ -340,7 +335,7 @@ class ClassMember(param.Parameterized):
             return f"Class {room.code}: {count} follow."
         if room.is_over:
             return f"Class {room.code} has ended. Change anything to go on."
-        if room.is_alone:
+        if room.leader is None:
             return f"The leader of class {room.code} is away: it waits some minutes."
         return f"You follow class {room.code}. Change anything to go on by yourself."
 

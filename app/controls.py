@@ -48,7 +48,6 @@ class Controls:
     def __init__(self, state: PageState, *, is_open: bool = True) -> None:
         self._state = state
         self._is_open = is_open
-        self._controls: list[SettingControl] = []
         # Toggle buttons have no pictures of their own: rules of style give each of them
         # one.
         pictures = {
@@ -106,7 +105,7 @@ class Controls:
                 with rebuilt():
                     self._build()
             else:
-                for control in self._controls:
+                for control in self._made.values():
                     control.update()
                 self._complete()
 
@@ -115,7 +114,6 @@ class Controls:
         self._built = settings.scene
         self._show_scene()
         self._scene.label = settings.title
-        self._controls = []
         self._made = {}
         self._chief, groups = _groups_of(type(settings))
         self._complete()
@@ -142,7 +140,6 @@ class Controls:
         new = [name for name in missing if settings.applies(name)]
         for name in new:
             self._made[name] = SettingControl(name, self._state)
-            self._controls.append(self._made[name])
         if new:
             made = [self._made[name] for name in self._chief if name in self._made]
             self.view[1:-1] = views_of(made)
@@ -152,9 +149,9 @@ class Controls:
         for number in self._closed.keys() & set(self._groups.active):
             _, names = self._closed.pop(number)
             if names:
-                controls = [SettingControl(name, self._state) for name in names]
-                self._controls += controls
-                view = pn.Column(*views_of(controls), margin=0)
+                controls = {name: SettingControl(name, self._state) for name in names}
+                self._made |= controls
+                view = pn.Column(*views_of(controls.values()), margin=0)
             else:
                 if self._files is None:
                     self._files = files_panel(self._state, WIDTH)

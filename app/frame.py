@@ -7,7 +7,7 @@ shows.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, is_dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -239,15 +239,8 @@ class Frame:
 
     @cached_property
     def nbytes(self) -> int:
-        """Memory of the arrays, bytes."""
-        moved = self.deformed
-        arrays = [moved.nodes, moved.points, moved.status, self.loop]
-        for fields in self.contact.values():
-            arrays += [fields.friction, fields.status]
-            for more in (fields.pressure, fields.slip, fields.bound):
-                if more is not None:
-                    arrays.append(more)
-        return sum(array.nbytes for array in arrays) + _size(self.extras)
+        """Memory of what differs from frame to frame, bytes."""
+        return _size([self.deformed, self.contact, self.loop, self.extras])
 
     @property
     def stage(self) -> tuple[int, bool, bool]:
@@ -263,11 +256,8 @@ class Frame:
         return self.iteration + self.is_answer
 
     def last(self, name: str) -> float:
-        """The newest value of a scalar of the history; NaN without any."""
-        values = self.history[name]
-        if len(values):
-            return float(values[-1])
-        return float("nan")
+        """The newest value of a scalar of the history."""
+        return float(self.history[name][-1])
 
     @property
     def error(self) -> float:
@@ -278,13 +268,15 @@ class Frame:
         return self.last("estimated_error")
 
 
-def _size(extra: Any) -> int:
-    """Memory of an extra and its parts with `nbytes`, B."""
-    if isinstance(extra, Mapping):
-        return sum(_size(part) for part in extra.values())
-    if isinstance(extra, list | tuple):
-        return sum(_size(part) for part in extra)
-    return int(getattr(extra, "nbytes", 0))
+def _size(part: Any) -> int:
+    """Memory of all arrays in a part of a frame, bytes."""
+    if isinstance(part, Mapping):
+        return sum(map(_size, part.values()))
+    if isinstance(part, list | tuple):
+        return sum(map(_size, part))
+    if is_dataclass(part):
+        return _size(vars(part))
+    return int(getattr(part, "nbytes", 0))
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 
 from app.frame import Frame
 
@@ -29,10 +29,8 @@ class History:
 
     def add(self, frame: Frame) -> None:
         """Insert a frame in order, replacing one of the same iterate."""
-        places = [kept.place for kept in self._frames]
-        index = bisect_left(places, frame.place)
-        replaced = places.count(frame.place)
-        self._frames[index : index + replaced] = [frame]
+        others = [kept for kept in self._frames if kept.place != frame.place]
+        self._frames = sorted([*others, frame], key=lambda kept: kept.place)
         while len(self._frames) > 2 and self._nbytes() > LIMIT:
             # Every other frame goes, but neither the first nor the last one, which is
             # seen.

@@ -97,13 +97,11 @@ class Link:
         if self._state.is_dragged or query == self.query:
             return
         self.query = query
-        if self._location is not None:
-            # After going back the location has not heard where the browser is.
-            is_same = self._location.search == query
-            if is_same:
-                self._location.search = f"{query}&"
-            else:
-                self._location.search = query
+        # After going back the location has not heard where the browser is.
+        if self._location.search == query:
+            self._location.search = f"{query}&"
+        else:
+            self._location.search = query
 
     def copy(self) -> str:
         """Copy the whole link in the browser, and return a message."""
@@ -173,9 +171,7 @@ def link_of(state: PageState) -> tuple[str, str]:
     shown["iteration"] = 0
     if is_waiting:
         shown["iteration"] = frame.iteration
-    root = ""
-    if pn.state.location is not None:
-        root = pn.state.location.href.partition("?")[0]
+    root = pn.state.location.href.partition("?")[0]
     definitions = state.settings.definitions()
     titles = [title_of(definitions[name]) for name in too_long(state.settings)]
     message = ""

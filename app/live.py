@@ -147,7 +147,7 @@ class Live:
         # without a layout of what is there.
         self._plots.clear()
         for card in self._cards:
-            card.clear()
+            card.view.clear()
         self._cards = [
             Card([self._view(kind) for kind in group], self.state) for group in groups
         ]
@@ -306,10 +306,6 @@ class Card:
                 self.view[:] = [self.tabs, self._about, self.pane]
             else:
                 self.view[:] = [self.tabs]
-
-    def clear(self) -> None:
-        """Let go of the figures, for other cards."""
-        self.view.clear()
 
     def _choose(self, number: int) -> None:
         """Name the view of a tab in the state; the first tab needs no name."""

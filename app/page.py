@@ -431,10 +431,7 @@ def open_page() -> pmui.Page:
         full = pmui.Page(title="Slipfront", main=[words])
         follow_itself(full)
         return full
-    query = ""
-    if pn.state.location is not None:
-        query = pn.state.location.search
-    shown, refusal = read(query)
+    shown, refusal = read(pn.state.location.search)
     # As long as the browser has not told how wide its window is.
     is_phone = "Mobi" in pn.state.headers.get("User-Agent", "")
     state = PageState(

@@ -19,9 +19,9 @@ from bokeh.settings import settings
 from panel.io.server import DocHandler, WSHandler
 from panel.viewable import Layoutable
 from tornado.httpserver import HTTPServer
-from tornado.httputil import HTTPHeaders, HTTPServerRequest
+from tornado.httputil import HTTPServerRequest
 from tornado.routing import Matcher, Rule
-from tornado.web import Application, ErrorHandler, GZipContentEncoding, OutputTransform
+from tornado.web import Application, ErrorHandler, GZipContentEncoding
 from tornado.websocket import WebSocketClosedError
 
 from solver.refusal import RefusedError
@@ -145,11 +145,8 @@ def port() -> int:
 
 
 def _address() -> SplitResult:
-    """Address of this page without its query; "" outside of a page."""
-    location = pn.state.location
-    if location is None:
-        return urlsplit("")
-    return urlsplit(location.href.partition("?")[0])
+    """Address of this page without its query."""
+    return urlsplit(pn.state.location.href.partition("?")[0])
 
 
 def configure() -> None:
@@ -200,7 +197,6 @@ class PageServer(HTTPServer):
         """Set the application up, as `HTTPServer.initialize` does."""
         if isinstance(request_callback, Application):
             request_callback.add_transform(Compressed)
-            request_callback.add_transform(Guarded)
             # As the first rule, it comes before all pages.
             request_callback.wildcard_router.rules.insert(
                 0, Rule(Refused(), ErrorHandler)
@@ -216,6 +212,10 @@ class PageHandler(DocHandler):
     """
 
     _turn = asyncio.Lock()
+
+    def set_default_headers(self) -> None:
+        """Add the policy on contents to the headers of a page."""
+        self.set_header("Content-Security-Policy", POLICY)
 
     async def prepare(self) -> None:
         """Wait for earlier requests, and until other pages are answered."""
@@ -250,17 +250,6 @@ class Compressed(GZipContentEncoding):
     """Compression at a fast level, as all pages wait for it."""
 
     GZIP_LEVEL = 1
-
-
-class Guarded(OutputTransform):
-    """Content security policy in the headers of every answer (`POLICY`)."""
-
-    def transform_first_chunk(
-        self, status_code: int, headers: HTTPHeaders, chunk: bytes, finishing: bool
-    ) -> tuple[int, HTTPHeaders, bytes]:
-        """Add the policy to the headers of an answer."""
-        headers["Content-Security-Policy"] = POLICY
-        return status_code, headers, chunk
 
 
 class Refused(Matcher):

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import math
+import re
+from functools import cache
+from html import escape
 from typing import NamedTuple
 
 import numpy as np
+from markupsafe import Markup
 
 from app.frame import LOCAL, Extremes, Floats, Frame, Selection
 from app.refusals import in_titles
 from app.state import PageState
 from app.templates import html
 from app.units import percent, settled
-from app.widgets import MEANINGS, explained
+from app.widgets import MEANINGS
 from solver.files.amounts import number, unit_for
 from solver.latin import Ending
 
@@ -47,6 +51,9 @@ TERMS = (
     "incremental solver",
 )
 """Words of the glossary in the status and its details."""
+LONGEST_FIRST = sorted(TERMS, key=len, reverse=True)
+TERM = re.compile(rf"(?<!\w)({'|'.join(LONGEST_FIRST)})(?!\w)")
+"""Pattern of one of these; of some that begin alike it takes the longest."""
 LEFT = 1e-5
 """Share of its largest value below which a key figure is 0: iterates leave as much
 where nothing acts."""
@@ -76,11 +83,26 @@ def status_line(state: PageState) -> str:
         details = [*_details(frame), *said]
     return html(
         "status.html",
-        lead=explained(lead, *TERMS),
-        rest=explained(rest, *TERMS),
-        details=[explained(sentence, *TERMS) for sentence in details],
+        lead=explained(lead),
+        rest=explained(rest),
+        details=[explained(sentence) for sentence in details],
         said=" ".join(said),
     )
+
+
+def explained(text: str) -> Markup:
+    """HTML of a text with explanations of the terms in the glossary.
+
+    It shows under the pointer, and once the term is tapped or has the focus.
+    """
+    return Markup(TERM.sub(lambda found: _with_meaning(found[0]), escape(text)))
+
+
+# The same terms stand in the words of each picture.
+@cache
+def _with_meaning(term: str) -> str:
+    """A term of the glossary, with its meaning at hand (HTML)."""
+    return html("term.html", term=term, meaning=MEANINGS[term])
 
 
 def spoken_status(state: PageState) -> str:

@@ -350,10 +350,10 @@ class Transport:
         """Set the slider to the shown iterate, except after a move by the user."""
         frame = self._state.frame
         slider = self.scrub
-        if self._state.is_over and not self._is_touched:
-            self._enliven()
         if frame is None:
             return
+        if self._state.is_over and not self._is_touched:
+            self._enliven()
         if time.monotonic() < self._moved_at + HELD:
             return
         is_newest = frame is self._state.newest

@@ -6,7 +6,6 @@ import io
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import cache
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,6 @@ from urllib.parse import quote
 import panel as pn
 import panel_material_ui as pmui
 import param
-from markupsafe import Markup
 from panel.models import HTML
 
 from app.templates import html
@@ -60,42 +58,8 @@ def rebuilt() -> Iterator[None]:
     After each change Bokeh goes through all models of the page, but here once.
     """
     document = pn.state.curdoc
-    with pn.io.hold(document):
-        if document is None:
-            yield
-        else:
-            with document.models.freeze():
-                yield
-
-
-def explained(text: str, *terms: str) -> Markup:
-    """HTML of a text with explanations of the terms in the glossary.
-
-    It shows under the pointer, and once the term is tapped or has the focus.
-    """
-    if not terms:
-        return Markup(escape(text))
-    parts = _whole_words(terms).split(text)
-    for number, part in enumerate(parts):
-        if number % 2:
-            parts[number] = _with_meaning(part)
-        else:
-            parts[number] = escape(part)
-    return Markup("".join(parts))
-
-
-# The same terms stand in the words of each picture.
-@cache
-def _whole_words(terms: tuple[str, ...]) -> re.Pattern[str]:
-    """Pattern of terms; of some that begin alike it takes the longest."""
-    longest_first = sorted(terms, key=len, reverse=True)
-    return re.compile(rf"(?<!\w)({'|'.join(map(re.escape, longest_first))})(?!\w)")
-
-
-@cache
-def _with_meaning(term: str) -> str:
-    """A term of the glossary, with its meaning at hand (HTML)."""
-    return html("term.html", term=term, meaning=MEANINGS[term])
+    with pn.io.hold(document), document.models.freeze():
+        yield
 
 
 def looks(*roles: str) -> dict[str, Any]:

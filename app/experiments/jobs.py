@@ -39,10 +39,9 @@ OUT = "out"
 def follow(look: Callable[[], None], end: Callable[[], None]) -> None:
     """Call `look` periodically, and `end` when the page is closed."""
     document = pn.state.curdoc
-    if document is not None and document.session_context is not None:
-        # Not before the browser is there: what changes while it loads may not reach it.
-        pn.state.onload(lambda: document.add_periodic_callback(look, LOOK))
-        document.on_session_destroyed(lambda context: end())
+    # Not before the browser is there: what changes while it loads may not reach it.
+    pn.state.onload(lambda: document.add_periodic_callback(look, LOOK))
+    document.on_session_destroyed(lambda context: end())
 
 
 @cache

@@ -226,10 +226,8 @@ def framed(files: Files, *, is_dark: bool) -> str:
     if not pages:
         return ""
     name = pages[0]
-    path = "app"
-    if pn.state.location is not None and pn.state.location.pathname:
-        path = pn.state.location.pathname
     # The browser says what the path is: it must not become markup.
-    page = files[name].decode().replace(PAGE, escape(path))
+    path = escape(pn.state.location.pathname)
+    page = files[name].decode().replace(PAGE, path)
     page = page.replace("<html", f'<html style="{SCHEMES[is_dark]}"', 1)
     return html("experiments/reports.html", title=name, page=page)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
@@ -56,13 +55,8 @@ class SettingRange:
         self._is_updating = True
         name, _, values = text.partition("=")
         options = dict(self._nothing)
-        # Of settings with the same title each is named with its group.
-        titles = Counter(map(title_of, settings.definitions().values()))
         for key, known in variable(settings).items():
-            title = title_of(known)
-            if titles[title] > 1:
-                title = f"{title} ({properties_of(known).group})"
-            options[title] = key
+            options[title_of(known)] = key
         self.name.param.update(options=options, value=name)
         definition = settings.definitions().get(name)
         label = "Values"

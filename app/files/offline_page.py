@@ -8,26 +8,19 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import panel as pn
 from bokeh.document import Document
 from bokeh.embed import file_html
 from bokeh.model import Model
 from bokeh.models import (
-    Axis,
-    ColorBar,
     CustomJS,
     DataRange1d,
     Div,
-    PointDrawTool,
     Slider,
-    Text,
-    Title,
 )
-from bokeh.plotting import figure
 from bokeh.resources import INLINE
 
 from app.charts import library
-from app.frame import Run, Selection
+from app.frame import Run
 from app.state import PageState
 from app.status import figures_line, status_line
 from app.templates import TEMPLATES
@@ -35,7 +28,7 @@ from app.views.layout import shape_of
 from app.views.pieces import PiecesView
 from app.views.rope import WireSection
 from app.views.scene import Scene
-from app.views.type_size import TEXT
+from app.views.type_size import TEXT, magnify
 from app.views.view import View
 from app.worker.cells import thinned
 from solver.files.amounts import unit_for, unit_of
@@ -101,7 +94,8 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
     page = _document(copies, slider=slider, instant=instant, figures=figures)
 
     def show(number: int) -> None:
-        selection = _at(state.selection, run, columns[number])
+        phase = float(run.instants[columns[number]] / run.instants[-1])
+        selection = replace(state.selection, phase=phase)
         instant.text = _instant(run, columns[number])
         figures.text = figures_line(frame, selection)
         for view in copies:
@@ -112,7 +106,6 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
     slider.js_on_change("value", _replay(page, len(columns), show))
     # The page begins with the selected instant.
     show(selected)
-    is_dark = pn.config.theme == "dark"
     return file_html(
         page,
         INLINE,
@@ -120,7 +113,7 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
         template=TEMPLATES.get_template("files/export.html"),
         template_variables={
             "library": library("bokeh-widgets"),
-            "is_dark": is_dark,
+            "is_dark": state.is_dark,
             "widest": WIDEST,
             "sentence": run.sentence,
             "status": status_line(state),
@@ -130,18 +123,10 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
             "settings": _settings_table(run.settings),
             "saved": dump(run.settings),
         },
-        theme="dark_minimal" if is_dark else None,
+        theme="dark_minimal" if state.is_dark else None,
         # Handlers of drags and taps do nothing there.
         suppress_callback_warning=True,
     )
-
-
-def _at(selection: Selection, run: Run, column: int) -> Selection:
-    """A selection at the instant of a column of the run."""
-    phase = 0.0
-    if run.instants[-1]:
-        phase = float(run.instants[column] / run.instants[-1])
-    return replace(selection, phase=phase)
 
 
 def _instant(run: Run, column: int) -> str:
@@ -182,10 +167,6 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
                 min_width=NARROWEST,
                 max_width=WIDEST,
             )
-            # Smaller than they are laid out: another machine may have no font but a
-            # wide one.
-            for glyph in plot.select(Text):
-                glyph.text_font_size = TEXT
         if isinstance(view, PiecesView):
             # Its words are not scaled either, and their lines are those of a phone.
             view.lay_out(NARROWEST, PIECES)
@@ -194,20 +175,10 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
             # Nobody tells its size either: there it stays in its place.
             ranges = {"x_range": DataRange1d(), "y_range": DataRange1d()}
             plot.update(match_aspect=True, **ranges)
-        _set_labels(plot)
-        plot.tools = [
-            tool for tool in plot.tools if not isinstance(tool, PointDrawTool)
-        ]
+        # Each theme has another type size. Words in a picture are smaller than they are
+        # laid out: another machine may have no font but a wide one.
+        magnify(plot, TEXT, TEXT)
     return copies
-
-
-def _set_labels(plot: figure) -> None:
-    """Set the type size of axes, titles and colour bars: each theme has another."""
-    for model in plot.references():
-        if isinstance(model, Axis | ColorBar | Title):
-            names = model.properties()
-            sizes = [name for name in names if name.endswith("text_font_size")]
-            model.update(**dict.fromkeys(sizes, TEXT))
 
 
 def _settings_table(settings: Settings) -> list[dict[str, str]]:

@@ -80,6 +80,8 @@ def _drawn(view: View, state: PageState, lesson: Lesson, width: int) -> Any:
     """A new figure of a view, for paper."""
     figure = view.figure
     figure.update(sizing_mode=None, width=width, height=HEIGHT, toolbar_location=None)
+    # Nobody tells the size of a figure on paper: a round arch would not be round.
+    view.lay_out(width, HEIGHT)
     if state.frame is not None:
         selection = replace(
             state.selection, phase=lesson.instant, interface=lesson.interface

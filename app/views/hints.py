@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from app.views.picture import Columns, Picture
-from solver.discrete.structure import Act
 
+PULLED = "↖ pulled to and fro"
 RUBS = "↑ rubs here"
 SOLVER = "the solver corrects a guess\nof the whole motion"
 ASIDE = 8.0
@@ -24,48 +22,23 @@ NONE: Columns = {"x": [], "y": [], "text": [], "text_align": []}
 
 
 def hints_of(picture: Picture) -> Columns:
-    """Columns of the marks on a picture; the pull is the load that varies most."""
+    """Columns of the marks on a picture of the bar with which every visit begins.
+
+    An address with settings is no first visit, and a changed setting ends it.
+    """
     layout = picture.layout
     length, top = layout.size * layout.scale
-    texts = [SOLVER]
-    aligns = ["left"]
-    anchors = [np.array([ASIDE - 0.5 * length, 0.5 * top])]
-    if picture.draggable:
-        driving = max(picture.draggable, key=_change)
-        x = float(driving.points[:, 0].mean())
-        text = f"↖ {_word_of(driving.act)}"
-        # It ends within the picture.
-        right = layout.canvas.width - layout.origin[0]
-        begin = right - layout.letter * len(text) - PADDING
-        texts.append(text)
-        anchors.append(np.array([min(x + ASIDE, begin), 0.5 * top - UNDER]))
-        aligns.append("left")
-    texts.append(RUBS)
-    aligns.append("center")
-    rubbing = np.array([(RUBBING - 0.5) * length, np.nanmin(picture.points[:, 1])])
-    if layout.description.footings is not None:
-        # Bodies of any shape may touch nowhere below.
-        rubbing = picture.points[int(RUBBING * len(picture.points))]
-    anchors.append(rubbing - [0.0, BELOW])
-    x, y = picture.page(np.array(anchors)).T
-    return {"x": x, "y": y, "text": texts, "text_align": aligns}
-
-
-def _word_of(act: Act) -> str:
-    """Word for what a load does throughout its path, where it acts."""
-    if act.unit in ("m", "1/m"):
-        return "moved here"
-    low = float(act.values.min())
-    high = float(act.values.max())
-    if low < 0.0 < high:
-        return "pulled to and fro"
-    outward = float(np.dot(np.reshape(act.towards, (-1, 2))[0], act.away))
-    if outward * (low + high) < 0.0:
-        return "pushed here"
-    return "pulled here"
-
-
-def _change(arrows: Any) -> float:
-    """Largest change of a load through time over its largest size."""
-    values = np.abs(arrows.act.values).max() or 1.0
-    return float(np.ptp(arrows.act.values, axis=-1).max() / values)
+    # The mark of the pull ends within the picture.
+    right = layout.canvas.width - layout.origin[0]
+    begin = right - layout.letter * len(PULLED) - PADDING
+    end = float(picture.arrows[0].points[0, 0])
+    solved = [ASIDE - 0.5 * length, 0.5 * top]
+    pulled = [min(end + ASIDE, begin), 0.5 * top - UNDER]
+    rubbed = [(RUBBING - 0.5) * length, picture.points[:, 1].min() - BELOW]
+    x, y = picture.page(np.array([solved, pulled, rubbed])).T
+    return {
+        "x": x,
+        "y": y,
+        "text": [SOLVER, PULLED, RUBS],
+        "text_align": ["left", "left", "center"],
+    }

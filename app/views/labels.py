@@ -109,7 +109,7 @@ def _beside(word: Word, line: Array, obstacles: Obstacles) -> Word:
         word._replace(anchor=middle - aside, align="right"),
         word._replace(anchor=foot + below, align="center"),
     ]
-    free = [place for place in places if not obstacles.covered_by(place)]
+    free = [place for place in places if not any(obstacles.below(place))]
     return next(iter(free), word)
 
 
@@ -183,12 +183,8 @@ def _apart(words: Sequence[Word], obstacles: Obstacles) -> list[Word]:
         others = [*placed, *words[index + 1 :]]
 
         def burden(place: Word, others: Sequence[Word] = others) -> tuple[bool, ...]:
-            return (
-                obstacles.has_arrows_below(place),
-                obstacles.has_bodies_below(place),
-                obstacles.has_ground_below(place),
-                _is_cut(_leader(place, obstacles), others, obstacles),
-            )
+            is_cut = _is_cut(_leader(place, obstacles), others, obstacles)
+            return *obstacles.below(place), is_cut
 
         chosen = word
         if meets(layout, word, placed) or any(burden(word)):

@@ -26,11 +26,13 @@ class Obstacles:
         self.layout = picture.layout
         self._picture = picture
 
-    def covered_by(self, word: Word) -> bool:
-        """Check whether a label covers bodies, the ground, an arrow or a handle."""
-        if self.has_bodies_below(word) or self.has_ground_below(word):
-            return True
-        return self.has_arrows_below(word)
+    def below(self, word: Word) -> tuple[bool, bool, bool]:
+        """Check whether a label covers arrows or handles, bodies, and the ground."""
+        return (
+            self._has_arrows_below(word),
+            self.has_bodies_below(word),
+            self._has_ground_below(word),
+        )
 
     def has_bodies_below(self, word: Word) -> bool:
         """Check whether a label covers bodies."""
@@ -39,7 +41,7 @@ class Obstacles:
             return False
         return lies_on(self.layout, word, *self._cells)
 
-    def has_ground_below(self, word: Word) -> bool:
+    def _has_ground_below(self, word: Word) -> bool:
         """Check whether a label covers the ground of a case.
 
         Loads act through ground that is all around.
@@ -48,7 +50,7 @@ class Obstacles:
             return False
         return lies_on(self.layout, word, *self._ground)
 
-    def has_arrows_below(self, word: Word) -> bool:
+    def _has_arrows_below(self, word: Word) -> bool:
         """Check whether a label covers an arrow or a handle."""
         places = self._shafts
         if lies_on(self.layout, word, places, places):

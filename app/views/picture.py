@@ -198,9 +198,7 @@ class Picture:
 
         It begins where the bodies are drawn, so that what is held stays there.
         """
-        size = float(np.abs(moved).max(initial=0.0))
-        if size == 0.0:
-            size = 1.0
+        size = float(np.abs(moved).max())
         shown = MECHANISM * self.layout.size[1] / size * moved
         nodes = self.nodes + shown * self.layout.scale
         return self._line(_drawn(self._geometry.outlines, nodes))

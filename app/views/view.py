@@ -17,6 +17,7 @@ from bokeh.models import (
     ColumnDataSource,
     CrosshairTool,
     CustomJS,
+    FullscreenTool,
     Glyph,
     GlyphRenderer,
     Legend,
@@ -41,7 +42,7 @@ from app.views.parts import LEAST, visuals
 from app.views.type_size import FONT, TEXT, WORDS, magnify
 from solver.settings.scene import Settings
 
-TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
+TOOLS = "pan,wheel_zoom,reset"
 SHORT = 200
 """Length of a curve up to which it is sent as a list: faster there than an array."""
 
@@ -210,11 +211,12 @@ class View:
             active_scroll="wheel_zoom",
             **(ranges | more),
         )
-        for tool in plot.tools:
-            if isinstance(tool, SaveTool):
-                # Else the browser asks for a name.
-                tool.filename = self.name
-        plot.add_tools(CrosshairTool(line_color=CUT, line_alpha=0.5))
+        plot.add_tools(
+            # Without a name the browser asks for one.
+            SaveTool(filename=self.name),
+            FullscreenTool(),
+            CrosshairTool(line_color=CUT, line_alpha=0.5),
+        )
         plot.js_on_change("hold_render", CustomJS(code=INSPECT))
         plot.toolbar.autohide = True
         plot.toolbar.logo = None

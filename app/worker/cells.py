@@ -131,8 +131,6 @@ def _drawings_of_grids(inside: Inside) -> list[Drawing]:
 def _drawings_of_shapes(structure: Bodies, inside: Inside) -> list[Drawing]:
     """Drawings of substructures of any other shape."""
     others = [part for part, grid in enumerate(inside.grids) if not is_rectangle(grid)]
-    if not others:
-        return []
     share = min(MOST_CELLS / len(inside.elements), 1.0)
     around = 4.0 * sum(body.shape.size for body in structure.bodies)
     sides = _sides_in_contact(structure)

@@ -19,8 +19,6 @@ from app.worker.references import LastAnswer, ReferenceCache
 from app.worker.runner import Runner
 from solver.refusal import RefusedError
 
-UNSEEN = 30.0
-"""Time without a picture on the screen after which a run waits, as it is unseen, s."""
 LONG = 60.0
 LARGE = 2e9
 """Estimated time, s, and memory, bytes, above which a run waits to be agreed to."""
@@ -41,7 +39,7 @@ def main(connection: Connection) -> None:
 class WorkerLoop:
     """Loop of a worker: processes orders, advances one run, sends reports.
 
-    It waits for orders without end while there is no run, or nobody sees the run.
+    It waits for orders without end while there is no run, or the run has nothing to do.
     Between pieces of work it takes all orders that have come. A frame is sent when the
     page is ready for it: `Ready` says so, and the frame that is sent takes it back.
     """
@@ -57,7 +55,6 @@ class WorkerLoop:
         self._needs = Needs()
         self._asked: int | None = None
         self._is_ready = True
-        self._shown_at = time.monotonic()
         threading.Thread(target=self._beat, daemon=True).start()
 
     def serve(self) -> None:
@@ -70,7 +67,7 @@ class WorkerLoop:
             self._receive(timeout)
             while self._orders:
                 self._guard(self._obey, self._orders.popleft())
-            if self._runner is not None and not self._is_unseen:
+            if self._runner is not None:
                 self._guard(self._work, self._runner)
 
     def _work(self, runner: Runner) -> None:
@@ -86,22 +83,16 @@ class WorkerLoop:
                 self._last = runner.answer
         if self._is_ready and runner.is_presentable:
             self._is_ready = False
-            self._shown_at = time.monotonic()
             self._send(messages.NewFrame(runner.frame(self._needs)))
 
     def _rest(self) -> float | None:
         """Time to wait for an order, s; None: unlimited."""
         runner = self._runner
-        if runner is None or self._is_unseen:
+        if runner is None:
             return None
         if self._is_ready and runner.is_presentable:
             return 0.0
         return runner.rest(self._is_ready)
-
-    @property
-    def _is_unseen(self) -> bool:
-        """Check whether the page, as a hidden tab, has painted no picture for long."""
-        return not self._is_ready and time.monotonic() > self._shown_at + UNSEEN
 
     def _obey(self, order: Order) -> None:
         """Carry out an order; without a run only orders of a run and of needs count."""

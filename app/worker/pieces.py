@@ -47,11 +47,6 @@ class StageFields:
     """Rest of the force at points, as what it would be if the whole side had it,
     (n_points, 2, n_instants), N."""
 
-    @property
-    def nbytes(self) -> int:
-        """Memory of the arrays, bytes."""
-        return sum(array.nbytes for array in vars(self).values())
-
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
@@ -85,11 +80,6 @@ class Pieces:
     """Indices of the instants among those of a frame, (n_instants,)."""
     stages: Mapping[str, StageFields]
     """Fields by stage, `LOCAL` and `LINEAR`."""
-
-    @property
-    def nbytes(self) -> int:
-        """Memory of the fields, bytes."""
-        return sum(stage.nbytes for stage in self.stages.values())
 
 
 class Cutter:

@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 
 from app.messages import Needs, Start
 from solver.discrete import Problem
-from solver.latin.end.status_step import states_of_solution
 from solver.reference.assembly import NoReferenceError
 from solver.reference.incremental import reference_of
 from solver.reference.rules import States
@@ -40,11 +39,6 @@ class LastAnswer:
 
     order: Start
     states: States
-
-    @classmethod
-    def of(cls, order: Start, solution: Reference) -> LastAnswer:
-        """Store the states of a solution, without its problem."""
-        return cls(order, states_of_solution(solution))
 
     def start_of(self, order: Start, needs: Needs) -> States | None:
         """States as start of an ordered run; None to start from zero.

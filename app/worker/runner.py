@@ -21,7 +21,7 @@ from solver.latin import (
     record,
 )
 from solver.latin.end.status import collapses
-from solver.latin.end.status_step import Certificate
+from solver.latin.end.status_step import Certificate, states_of_solution
 from solver.latin.run_cost import RunCost, run_cost
 from solver.reference.assembly import Interrupted, never
 from solver.reference.distance import Distance, distance_to
@@ -253,7 +253,9 @@ class Runner:
             record(iterate, decision, self._distance, watch=not self._is_near)
         )
         if self.status is not None and decision.certificate is not None:
-            self.answer = LastAnswer.of(self._order, decision.certificate.solution)
+            # Without the problem of the solution, which takes most memory.
+            states = states_of_solution(decision.certificate.solution)
+            self.answer = LastAnswer(self._order, states)
             if self.is_dragged:
                 self._certificate = decision.certificate
 

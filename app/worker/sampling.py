@@ -20,7 +20,6 @@ from app.worker.strand import DrawnRope
 from app.worker.zigzag import zigzag
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
-from solver.discrete.probes import LoopFields
 from solver.discrete.problem import is_unloaded
 from solver.latin import Answer, Iterate, Record, Solution, Status
 from solver.latin.end.status import CANCELLED
@@ -131,7 +130,8 @@ class Sampler:
         if reference is not None:
             self._solution = reference
             known["reference"] = self._contact(reference, self.problem.contacts)
-            known["reference_loop"] = self._loop(reference)
+            loop = np.stack(self.loop.along(reference))
+            known["reference_loop"] = floats(loop[:, self.columns])
             known["reference_moved"] = self.drawn.deformed(reference).largest
             known["reference_seconds"] = reference.seconds
         self.run = replace(self.run, **known)
@@ -207,8 +207,6 @@ class Sampler:
         contacts = self.problem.contacts
         # Springs are next to the surfaces, and neither stick nor slip.
         status = iterate.status[contacts.on_surfaces]
-        if not len(status):
-            return np.zeros(len(self.columns))
         slips = np.abs(status[:, self.columns]) == 1
         # One wire of a layer may stand for all of them.
         copies = contacts.copies[contacts.on_surfaces]
@@ -326,10 +324,6 @@ class Sampler:
                     largest = floats(shown * self.problem.scales.force)
                     bounded[name] = replace(contact[name], bound=largest)
         return bounded
-
-    def _loop(self, shown: LoopFields) -> Floats:
-        """Displacement and force of the loop at shown instants, (2, n_shown), SI."""
-        return floats(np.stack(self.loop.along(shown))[:, self.columns])
 
 
 def _shown(field: Array | None, points: slice, rows: Indices) -> Floats | None:

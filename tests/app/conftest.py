@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import pytest
+from bokeh.document import Document
 from frames import arch, ran
+from panel.io.state import set_curdoc
 from pictures import frame_of, shown, small
 
 from app.frame import Frame
 from app.views.scene import HEIGHT, WIDTH, Scene
 from app.views.type_size import TEXT
 from solver.scenes import CATALOGUE
+
+
+@pytest.fixture(autouse=True)
+def document() -> Iterator[Document]:
+    """A document whose page is being made."""
+    made = Document()
+    with set_curdoc(made):
+        yield made
 
 
 @pytest.fixture(scope="module", params=CATALOGUE)

@@ -339,21 +339,21 @@ def test_chief_settings_and_groups_are_all_that_have_several_values(scene: str) 
 def test_groups_are_built_when_they_are_opened_and_hold_all_that_is_not_chief() -> None:
     controls = Controls(of_scene("incline"))
     chief, groups = _groups_of(type(defaults("incline")))
-    made = [control.name for control in controls._controls]
+    made = [control.name for control in controls._made.values()]
     assert made == [name for name in chief if defaults("incline").applies(name)]
     accordion = controls._groups
     accordion.active = list(range(len(accordion)))
-    shown = [control.name for control in controls._controls]
+    shown = [control.name for control in controls._made.values()]
     assert sorted(shown) == sorted([*made, *chain.from_iterable(groups.values())])
 
 
 def test_controls_out_of_sight_are_made_once_they_are_opened() -> None:
     state = of_scene("bar")
     controls = Controls(state, is_open=False)
-    assert not controls._controls
+    assert not controls._made
     state.choose_scene("strand")
     controls.open(True)
-    shown = {control.name: control for control in controls._controls}
+    shown = {control.name: control for control in controls._made.values()}
     assert set(shown) <= set(names("strand"))
     assert controls._scene.value == "strand"
     state.change(peak=held(state, "peak") + 1.0)

@@ -9,6 +9,7 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 import pytest
+from frames import ran
 
 from app.frame import Frame
 from app.lessons.catalogue import (
@@ -22,9 +23,10 @@ from app.lessons.catalogue import (
     without_controls,
 )
 from app.lessons.guide import WITHOUT, Guide, kinds_beside
-from app.lessons.handout import handout
+from app.lessons.handout import _drawn, handout
 from app.messages import Needs
 from app.state import PageState, Poll, default_settings
+from app.views.scene import Scene
 from app.worker.sampling import Sampler
 from solver.scenes import discretise
 from solver.study.lessons import Lesson
@@ -220,6 +222,14 @@ def test_a_control_stands_in_its_sentence_and_not_on_paper() -> None:
     assert (before, control) == ("Move k: ", "k_scale")
     assert after == "It takes {value:iterations} iterations."
     assert without_controls(text) == "It takes {value:iterations} iterations."
+
+
+def test_a_round_arch_is_round_on_paper() -> None:
+    lesson = LESSONS["standing-arch"]
+    frame = ran(lesson.settings.replace(voussoirs=6, instants=5))
+    state = PageState(frame.run.settings, frame=frame)
+    figure = _drawn(Scene(state), state, lesson, 660)
+    assert figure.x_range.end / figure.width == figure.y_range.end / figure.height
 
 
 def test_a_handout_asks_in_front_and_answers_overleaf(frame: Frame) -> None:

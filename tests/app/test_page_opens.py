@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import runpy
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,7 +16,6 @@ from bokeh.document import Document
 from bokeh.document.models import DocumentModelManager
 from bokeh.models import ImportedStyleSheet
 from bokeh.plotting import figure
-from panel.io.state import set_curdoc
 from panel.links import Callback
 from panel.util import edit_readonly
 
@@ -41,14 +40,6 @@ def orders(monkeypatch: pytest.MonkeyPatch) -> list[Order]:
     worker = SimpleNamespace(send=told.append, end=lambda: None, hangs=False)
     monkeypatch.setattr(app.supervisor, "Worker", lambda on_report, others: worker)
     return told
-
-
-@pytest.fixture
-def document() -> Iterator[Document]:
-    """A document whose page is being made."""
-    made = Document()
-    with set_curdoc(made):
-        yield made
 
 
 def test_a_first_run_goes_on_once_its_first_picture_is_painted(
@@ -187,7 +178,7 @@ def test_the_slider_names_the_iterate_of_the_status_line(document: Document) -> 
         assert page._live.transport.iterate.text == f"Iteration {last} of {last}"
 
 
-@pytest.mark.usefixtures("orders", "document")
+@pytest.mark.usefixtures("orders")
 def test_what_a_person_does_ends_a_first_visit_before_the_browser_hears_of_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -200,7 +191,6 @@ def test_what_a_person_does_ends_a_first_visit_before_the_browser_hears_of_it(
     assert not page.state.is_new
 
 
-@pytest.mark.usefixtures("document")
 def test_a_projected_tab_keeps_the_header_unless_the_bar_of_a_run_leads_back() -> None:
     page = Page(PageState(default_settings("bar"), view="present"))
     assert page.template.sx == BARE
@@ -218,7 +208,6 @@ def count_of(words: str, page: Page) -> int:
     return sum(words in text for text in texts)
 
 
-@pytest.mark.usefixtures("document")
 @pytest.mark.parametrize("tab", TABS)
 def test_a_refusal_is_told_once_on_whichever_tab_is_in_sight(tab: str) -> None:
     """A refusal of an address stood in the status line of the tab Live alone."""
@@ -230,7 +219,7 @@ def test_a_refusal_is_told_once_on_whichever_tab_is_in_sight(tab: str) -> None:
     assert count_of("No sun.", page) == 0
 
 
-@pytest.mark.usefixtures("orders", "document")
+@pytest.mark.usefixtures("orders")
 def test_what_gives_an_answer_away_is_hidden_until_the_question_is_answered() -> None:
     lesson = LESSONS["broken-wire"]
     state = PageState(settings_of(lesson), lesson=lesson.name)
@@ -241,7 +230,6 @@ def test_what_gives_an_answer_away_is_hidden_until_the_question_is_answered() ->
     assert "asked" not in page._live.view.css_classes
 
 
-@pytest.mark.usefixtures("document")
 def test_the_first_frame_has_what_the_views_that_are_named_need(
     orders: list[Order],
 ) -> None:
@@ -252,7 +240,6 @@ def test_the_first_frame_has_what_the_views_that_are_named_need(
     assert not [order for order in orders[begins:] if isinstance(order, Needs)]
 
 
-@pytest.mark.usefixtures("document")
 def test_the_page_of_a_full_server_is_not_watched_for(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -287,7 +274,7 @@ def test_a_server_with_a_foolish_environment_does_not_start_and_says_why(
     assert str(ended.value).startswith(said)
 
 
-@pytest.mark.usefixtures("orders", "document")
+@pytest.mark.usefixtures("orders")
 def test_a_page_does_not_follow_how_busy_the_server_is() -> None:
     page = Page(PageState(default_settings("bar")))
     with edit_readonly(pn.state):
@@ -296,7 +283,7 @@ def test_a_page_does_not_follow_how_busy_the_server_is() -> None:
         pn.state.busy = False
 
 
-@pytest.mark.usefixtures("orders", "document")
+@pytest.mark.usefixtures("orders")
 def test_pages_leave_time_to_one_that_is_made_until_a_browser_has_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -323,7 +310,7 @@ def test_a_page_that_nobody_was_sent_asks_nothing_of_the_internet(
     assert not [url for url in sheets if url.startswith("http")]
 
 
-@pytest.mark.usefixtures("orders", "document")
+@pytest.mark.usefixtures("orders")
 @pytest.mark.parametrize("is_narrow", [False, True])
 def test_a_sheet_of_controls_has_the_picture_move_up_on_a_phone_alone(
     is_narrow: bool,
@@ -335,7 +322,7 @@ def test_a_sheet_of_controls_has_the_picture_move_up_on_a_phone_alone(
     assert "with-sheet" not in page._live.view.css_classes
 
 
-@pytest.mark.usefixtures("orders", "document")
+@pytest.mark.usefixtures("orders")
 def test_a_header_has_its_list_of_buttons_once_a_window_is_narrow() -> None:
     page = Page(PageState(default_settings("bar")))
     header = page._header()

@@ -388,26 +388,6 @@ def test_marks_of_a_first_visit_take_the_place_of_the_keys_in_a_small_picture() 
     assert keys.visible
 
 
-@pytest.mark.parametrize(
-    ("changes", "word"),
-    [
-        ({}, "pulled to and fro"),
-        ({"load": "triangle"}, "pulled here"),
-        ({"load": "triangle", "peak": -900.0}, "pushed here"),
-        ({"right_end": "held", "right_displacement": 2e-4}, "moved here"),
-    ],
-)
-def test_the_mark_of_a_first_visit_says_what_the_load_does(
-    changes: dict[str, object], word: str
-) -> None:
-    frame = frame_of(small("bar").replace(**changes))
-    view = Scene(PageState(frame.run.settings, is_new=True))
-    _ = view.figure
-    view.update(frame, Selection(0.25), None)
-    texts = view.sources["hints"].data["text"]
-    assert sum(word in text for text in texts) == 1
-
-
 def test_a_path_that_is_gone_has_no_name_before_the_reference_comes() -> None:
     before = frame_of(small("bar"))
     frame = frame_of(small("bar").replace(peak=0.0))

@@ -108,3 +108,11 @@ def test_the_range_of_iterations_moves_seldom_in_a_run_and_is_exact_at_its_end(
         page.wait(0.4)
         starts.append(slider.start)
     assert starts == [-99, -99, -99, -209, -219]
+
+
+def test_a_first_run_that_failed_plays_nothing() -> None:
+    state = PageState(default_settings("bar"), has_failed=True)
+    document = Document()
+    followed = Transport(state, document)
+    followed._follow()
+    assert followed.play_button.icon == "play_circle"

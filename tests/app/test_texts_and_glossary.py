@@ -6,15 +6,15 @@ from itertools import chain
 
 import pytest
 
-from app.status import TERMS
+from app.status import TERMS, explained
 from app.views.catalogue import CARDS
 from app.views.view import View
-from app.widgets import GLOSSARY, MEANINGS, ROW, PlainText, explained
+from app.widgets import GLOSSARY, MEANINGS, ROW, PlainText
 
 
 @pytest.mark.parametrize("term", TERMS)
 def test_a_term_of_the_status_has_its_meaning_at_hand(term: str) -> None:
-    written = explained(f"12 {term} · 3", *TERMS)
+    written = explained(f"12 {term} · 3")
     assert written.startswith("12 <abbr")
     assert written.striptags() == f"12 {term} · 3"
     assert MEANINGS[term] in written.unescape()
@@ -33,7 +33,7 @@ def test_a_word_is_explained_once() -> None:
 
 
 def test_markup_in_a_text_is_text_and_a_term_within_a_word_is_none() -> None:
-    written = explained("<b>wrongly</b> researched", *TERMS)
+    written = explained("<b>wrongly</b> researched")
     assert "<" not in written
     assert written.unescape() == "<b>wrongly</b> researched"
 

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from solver.scenes import CATALOGUE
+from solver.settings.definitions import title_of
 
 
 def words(scene: str, changes: dict[str, Any]) -> str:
@@ -65,3 +66,9 @@ def test_a_scene_says_what_it_is(
     scene: str, changes: dict[str, Any], said: str
 ) -> None:
     assert said in words(scene, changes)
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_settings_of_a_scene_are_told_apart_by_their_titles(scene: str) -> None:
+    titles = [title_of(each) for each in CATALOGUE[scene].definitions().values()]
+    assert len(set(titles)) == len(titles)
