@@ -38,7 +38,7 @@ for record in solution.records:
     print(record.iteration, record.indicator, record.error_force)
 print(solution.status.ending)
 """
-LOOKS = "color", "line_color", "line_width"
+LOOKS = "color", "line_color", "line_width", "text_align", "text_color"
 """Columns of plots that are no data."""
 STATUSES = {-1: "slip backward", 0: "stick", 1: "slip forward", OPEN: "open"}
 """Words for the status of a point in tables."""
@@ -110,10 +110,12 @@ def plot_table(view: View) -> str:
     """CSV of the points of a plot's curves, one row per point, one line of heads.
 
     Columns are those of the plot's sources, in the units of its axes; paths are
-    numbered, and a curve has the name of its source. Looks are left out.
+    numbered, and a curve has the name of its source. Words and looks are left out.
     """
     tables = []
     for key, source in view.sources.items():
+        if "text" in source.data:
+            continue
         columns = {
             name: list(column)
             for name, column in source.data.items()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,9 +24,11 @@ LEAST = 1e-14
 """Value at which smaller ones, which are rounding, and zero are drawn."""
 FOOT = 0.05
 """Height at which the answer stands over that of the axis: a ring has room there."""
-ROOM = 1.02
-"""Least length of the axis of iterations over that of the curves: the mark at their end
-is whole."""
+NAMED = 1.25
+"""Least length of the axis of iterations over that of the curves, at whose ends their
+names stand."""
+APART = 0.085
+"""Least distance of two of these names over the height of the axis."""
 SEEN_IN_TIME = (1e-2, 2.0)
 """Errors over run time that are in sight in any case."""
 SHORTEST = 20
@@ -65,9 +67,17 @@ class Convergence(View):
         self.add("newest", "Scatter", color=ERROR, size=8)
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
         self.add("answer", "Scatter", size=11, **ring)
+        self.add(
+            "names",
+            "Text",
+            "x y text text_color",
+            x_offset=10,
+            text_baseline="middle",
+            text_font_size=self.words,
+        )
         self.mark({"stage": REFERENCE}, marker="dash", angle=0.5 * np.pi)
         titles = {column: title for column, (title, *_) in CURVES.items()}
-        more = {"answer": "exact", "goal": "goal", "stage": "local stage"}
+        more = {"goal": "goal", "stage": "local stage"}
         self.legend(**titles, **more, ghost="ghost")
         self.show("stage", False, may_come_back=False)
         hover(plot, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
@@ -93,7 +103,12 @@ class Convergence(View):
         at = frame.iteration - 0.5 * is_local
         self.fill("shown", x=[at] if is_back or is_local else [])
         self.show("stage", is_local)
-        self._show_answer(newest)
+        # The answer, whose error is nearly zero, stands at the foot.
+        answers = []
+        if newest.is_answer:
+            answers = [newest.iteration]
+        self.draw("answer", answers, self._values([FOOT] * len(answers)))
+        self._show_names()
         goal = newest.run.settings.accuracy
         self.fill("goal", f"goal {percent(goal)}", y=[goal])
 
@@ -110,18 +125,51 @@ class Convergence(View):
         shortest = SHORTEST
         if has_ended:
             shortest = SHORTEST_AT_END
-        end = rounded_up(ROOM * max(*ends, shortest))
+        end = rounded_up(NAMED * max(*ends, shortest))
         self.x.hold((number, has_ended), [0.0, end])
 
-    def _show_answer(self, newest: Frame) -> None:
-        """Show the answer, whose error is nearly zero, at the foot of the axis."""
-        answers = []
-        foots = []
-        if newest.is_answer:
-            axis = self.figure.y_range
-            answers = [newest.iteration]
-            foots = [axis.reset_start * (axis.reset_end / axis.reset_start) ** FOOT]
-        self.draw("answer", answers, foots)
+    def _show_names(self) -> None:
+        """Place the names of curves at their ends, apart from each other."""
+        titles = {
+            column: (title, color) for column, (title, color, *_) in CURVES.items()
+        }
+        titles["answer"] = ("exact", ERROR)
+        names = []
+        for column, (title, color) in titles.items():
+            ends = self.sources[column].data
+            if len(ends["x"]):
+                (height,) = self._heights(ends["y"][-1:])
+                names.append((height, float(ends["x"][-1]), title, color))
+        names.sort()
+        heights = spread([height for height, *_ in names], APART)
+        self.fill(
+            "names",
+            x=[x for _, x, *_ in names],
+            y=self._values(heights),
+            text=[title for *_, title, _ in names],
+            text_color=[color for *_, color in names],
+        )
+
+    @property
+    def words(self) -> str:
+        """Type size of the names of curves, as CSS has it: that of the axes."""
+        return self._type
+
+    def _heights(self, values: Floats) -> Floats:
+        """Heights of values over that of the axis, shape (n,) each."""
+        low, high = self._limits
+        return np.asarray((np.log10(values) - low) / (high - low))
+
+    def _values(self, heights: Sequence[float]) -> Floats:
+        """Values at heights over that of the axis, shape (n,) each."""
+        low, high = self._limits
+        return np.asarray(10.0 ** (low + (high - low) * np.asarray(heights)))
+
+    @property
+    def _limits(self) -> Floats:
+        """Logarithms of the limits of the axis of errors, shape (2,)."""
+        axis = self.figure.y_range
+        return np.log10([axis.reset_start, axis.reset_end])
 
     def _go_back(self, event: Any) -> None:
         """Show the iterate nearest to a tap."""
@@ -136,6 +184,19 @@ class Convergence(View):
         if has_errors:
             column = "error_force"
         self.draw("ghost", *_curve(past, "iteration", column), self.ghost_name)
+
+
+def spread(heights: Sequence[float], apart: float) -> list[float]:
+    """Ascending heights between 0 and 1, raised and lowered to distances of `apart`.
+
+    Half of that is free below the lowest one.
+    """
+    steps = apart * np.arange(len(heights))
+    inside = np.maximum(heights, 0.5 * apart)
+    raised = np.maximum.accumulate(inside - steps)
+    # What was pushed beyond the upper end goes down, and others before it.
+    moved = np.minimum(raised, 1.0 - apart * len(heights)) + steps
+    return [float(height) for height in moved]
 
 
 def _curve(

@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from views import (
     frames_of,
     shown,
@@ -13,7 +15,7 @@ from views import (
 )
 
 from app.frame import Selection
-from app.views.errors import CURVES, LEAST, Convergence
+from app.views.errors import APART, CURVES, LEAST, Convergence, spread
 
 
 def test_the_answer_is_a_ring_and_no_iteration_of_the_curve() -> None:
@@ -85,11 +87,35 @@ def test_the_legend_names_all_curves_of_errors_and_the_goal_and_hides_them() -> 
         "estimate",
         "k-free",
         "η",
-        "exact",
         "goal 1 %",
     ]
     curves = {item.renderers[0].name for item in legend.items}
     assert set(CURVES) <= curves
+
+
+def test_names_stand_at_the_ends_of_curves_and_the_answer_apart() -> None:
+    answer = frames_of("bar")[2]
+    view = view_of(Convergence, answer)
+    names = view.sources["names"].data
+    titles = [title for title, *_ in CURVES.values()]
+    assert sorted(names["text"]) == sorted([*titles, "exact"])
+    assert np.all(np.diff(view._heights(names["y"])) >= APART - 1e-9)
+    for column, (title, *_) in CURVES.items():
+        end = view.sources[column].data["x"][-1]
+        assert names["x"][names["text"].index(title)] == end
+    # To the right of them there is room.
+    assert max(names["x"]) <= view.figure.x_range.end / 1.25
+
+
+@given(st.lists(st.floats(0.05, 0.9), max_size=7))
+def test_heights_that_are_spread_are_apart_and_within_the_axis(
+    heights: list[float],
+) -> None:
+    found = spread(sorted(heights), 0.1)
+    assert np.all(np.diff(found) > 0.1 - 1e-9)
+    assert all(0.05 <= height <= 1.0 for height in found)
+    if np.all(np.diff(sorted(heights)) > 0.1):
+        assert found == pytest.approx(sorted(heights))
 
 
 def test_a_tap_on_the_errors_goes_back_to_that_iteration() -> None:
