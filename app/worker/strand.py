@@ -21,8 +21,8 @@ from app.worker.cells import floats, mesh_of, thinned
 from app.worker.geometry import MOST_POINTS, Extras, StressField
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
-from solver.discrete.rope.rope import (
-    Rope,
+from solver.discrete.rope.rope import Rope
+from solver.discrete.rope.wire_forces import (
     cut_at,
     stress_at,
     wire_forces,

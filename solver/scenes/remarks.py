@@ -13,7 +13,8 @@ from solver.discrete.plane.makers.band import Band
 from solver.discrete.plane.rectangles.rigid_stack import is_upright
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
-from solver.discrete.rope.rope import Rope, wire_forces
+from solver.discrete.rope.rope import Rope
+from solver.discrete.rope.wire_forces import wire_forces
 from solver.discrete.structure import Structure
 from solver.latin import Iterate
 from solver.latin.end.certified import Answer

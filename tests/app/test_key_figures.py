@@ -17,7 +17,7 @@ from app.worker.geometry import MOST_POINTS
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from app.worker.sampling import MOST_INSTANTS, Sampler
-from solver.discrete.rope.rope import wire_stresses
+from solver.discrete.rope.wire_forces import wire_stresses
 from solver.files.amounts import number
 from solver.scenes import CATALOGUE
 from solver.study.quantities.finished import FinishedRun, figures_of

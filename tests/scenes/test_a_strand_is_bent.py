@@ -18,9 +18,9 @@ from solver.discrete.rope.cross_section import (
     WireLayer,
     seven_wire,
 )
-from solver.discrete.rope.rope import (
+from solver.discrete.rope.rope import Rope
+from solver.discrete.rope.wire_forces import (
     CutWires,
-    Rope,
     cut_at,
     stress_at,
     stress_ranges,

@@ -8,7 +8,8 @@ import numpy as np
 
 from solver.arrays import RESIDUE, Array
 from solver.discrete.probes import AxialForce
-from solver.discrete.rope.rope import Rope, stress_ranges
+from solver.discrete.rope.rope import Rope
+from solver.discrete.rope.wire_forces import stress_ranges
 from solver.laws import OPEN, FrictionLaw
 from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import (
