@@ -26,15 +26,7 @@ from solver.checks import (
 )
 from solver.discrete.elements import MOST_POISSON
 from solver.discrete.plane.rectangles.bricks import Brick, grid_of
-from solver.discrete.plane.rectangles.sides import (
-    Side,
-    SideComponent,
-    Spring,
-    Support,
-    check_bricks,
-    check_sides,
-    check_support,
-)
+from solver.discrete.plane.rectangles.sides import Side, SideComponent, Spring, Support
 from solver.discrete.plane.rectangles.stack_drawn import (
     act_of_ground,
     acts_on_sides,
@@ -46,6 +38,11 @@ from solver.discrete.plane.rectangles.stack_loops import (
     StackLoop,
     loop_of_end,
     loop_on_ground,
+)
+from solver.discrete.plane.rectangles.stack_refused import (
+    check_bricks,
+    check_sides,
+    check_support,
 )
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Axes, Description, Loop, act_of_weight
