@@ -6,7 +6,7 @@ piecewise linear function, which Newton's method on the statuses of the contacts
 forces do no more work along it: without friction that is the least energy, which always
 falls. Near the balance all instants take a step together, with the sliders that it
 moves; elsewhere it is found instant by instant. Where steps lead nowhere bodies are
-followed on their way from the instant before (`BalancePath`).
+followed on their way from the instant before ().
 """
 
 from __future__ import annotations
@@ -27,14 +27,7 @@ KINKS = 8
 
 
 class BalancePath:
-    """Path of the rigid bodies from one loading to another, from kink to kink.
-
-    While no pair changes its status, the bodies that stay in balance move along a line.
-    At a kink one pair opens, closes, slips or sticks, and the line continues in another
-    direction. That may lead back to smaller shares of the way, where no larger share
-    has a balance near. A path that is followed so ends at the other loading, or goes to
-    infinity (Eaves and Scarf, Math. Oper. Res. 1, 1976). Newton's steps may go round in
-    a circle instead, as they do on thick arches.
+    """A path of bodies in balance.
 
     Its pairs change their statuses where a margin of theirs is zero: what the pair
     presses by, and what friction that holds it goes beyond its bound by, either way.
