@@ -10,7 +10,7 @@ from app.messages import Needs
 from app.worker.cells import NONE, floats
 from solver.arrays import Array, Indices, largest_size
 from solver.discrete import Problem
-from solver.discrete.contacts import Stacked
+from solver.discrete.contact_groups import Stacked
 from solver.latin import Iterate
 from solver.laws import OPEN
 from solver.study.quantities.arch_measures import are_hinges

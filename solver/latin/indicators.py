@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import ROUNDING, Array
-from solver.discrete.contacts import ContactGroup
+from solver.discrete.contact_groups import ContactGroup
 from solver.discrete.problem import Problem
 from solver.laws.contact import Violation
 from solver.laws.interface import beyond, squared

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from solver.arrays import ROUNDING, Array, Flags
-from solver.discrete.contacts import carries
+from solver.discrete.contact_groups import carries
 from solver.discrete.problem import Problem
 from solver.laws import OPEN
 from solver.reference.assembly import Interrupted, NoReferenceError, never

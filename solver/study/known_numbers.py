@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 
 from solver.arrays import Array
-from solver.discrete.contacts import NO_SLIP
+from solver.discrete.contact_groups import NO_SLIP
 from solver.discrete.probes import LoopFields, reaction, reaction_moment
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Loop

@@ -11,7 +11,8 @@ from contact_problems import block, friction_of
 
 from solver.arrays import Array
 from solver.discrete import discretise
-from solver.discrete.contacts import NO_SLIP, ContactGroup, Contacts
+from solver.discrete.contact_groups import NO_SLIP, ContactGroup
+from solver.discrete.contacts import Contacts
 from solver.discrete.driven_friction import DrivenFriction, driven_friction
 from solver.discrete.drives import Drive, describe_limit, describe_loads
 from solver.laws import OPEN, Component, Contact, SlipFactor, Unilateral

@@ -18,7 +18,7 @@ from typing import Literal
 import numpy as np
 
 from solver.arrays import RESIDUE, Array
-from solver.discrete.contacts import Stacked
+from solver.discrete.contact_groups import Stacked
 from solver.latin import Iterate
 from solver.settings.scene import Settings
 
