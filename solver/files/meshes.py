@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from solver.discrete.plane.makers.named_mesh import check_named
+from solver.discrete.plane.makers.named_mesh_refused import check_named
 from solver.files.disk import LARGEST, read_bytes, too_large
 from solver.refusal import LONGEST, RefusedError, Words
 from solver.scenes.mesh_files import ABAQUS, CAN, GMSH, HEAD, as_text, read_mesh

@@ -14,7 +14,8 @@ import solver.scenes.shared as shared
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body
 from solver.discrete.plane.joint import Joint
-from solver.discrete.plane.makers.named_mesh import NamedMesh, check_named
+from solver.discrete.plane.makers.named_mesh import NamedMesh
+from solver.discrete.plane.makers.named_mesh_refused import check_named
 from solver.discrete.problem import Problem
 from solver.refusal import RefusedError, Words
 from solver.scenes.mesh_files import from_text, read_example

@@ -7,7 +7,7 @@ import meshio
 import numpy as np
 import pytest
 
-from solver.discrete.plane.makers.named_mesh import check_named
+from solver.discrete.plane.makers.named_mesh_refused import check_named
 from solver.files.meshes import text_of_mesh
 from solver.scenes import CATALOGUE
 from solver.scenes.mesh_files import as_text, named, read_mesh

@@ -9,7 +9,8 @@ import pytest
 from runs import errors
 
 from solver.arrays import Array
-from solver.discrete.plane.makers.named_mesh import NamedMesh, check_named
+from solver.discrete.plane.makers.named_mesh import NamedMesh
+from solver.discrete.plane.makers.named_mesh_refused import check_named
 from solver.files.meshes import text_of_mesh
 from solver.files.saved import settings_from_command
 from solver.reference.incremental import reference_of
