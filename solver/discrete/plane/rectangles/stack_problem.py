@@ -1,4 +1,4 @@
-"""Discrete problem of rectangular bodies: that of their lattices, which may start at rest."""
+"""Problem of rectangular bodies: that of their lattices, which may start at rest."""
 
 from __future__ import annotations
 
