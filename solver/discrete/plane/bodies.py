@@ -33,7 +33,8 @@ from solver.discrete.plane.bodies_refused import (
     check_weight,
 )
 from solver.discrete.plane.body import Body, Held, Load, NodeSpring, Shape, turned_by
-from solver.discrete.plane.joint import Joint, NodePairs, kinds_of
+from solver.discrete.plane.joint import Joint
+from solver.discrete.plane.node_pairs import NodePairs, kinds_of
 from solver.discrete.probes import constant, mean_held, node_sum, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Act, Axes, Description, Loop

@@ -11,7 +11,8 @@ from solver.arrays import Array, Flags, Indices
 from solver.checks import Count, Numbers, check_value
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.body import Body, Held, Load, NodeSpring
-from solver.discrete.plane.joint import Joint, NodePairs, along_joints
+from solver.discrete.plane.joint import Joint
+from solver.discrete.plane.node_pairs import NodePairs, along_joints
 from solver.refusal import RefusedError, Words
 
 RESERVED = "contacts", "supports"

@@ -10,13 +10,14 @@ from scipy import sparse
 
 from solver.arrays import Array, distinct
 from solver.discrete.plane.cut_bodies import CutBodies
-from solver.discrete.plane.joint import Joint, along_joints
+from solver.discrete.plane.joint import Joint
 from solver.discrete.plane.joints_of_bodies import (
     JointPairs,
     macro_bases,
     positions_along,
     stiffness_beside,
 )
+from solver.discrete.plane.node_pairs import along_joints
 from solver.discrete.substructure import Scales
 from solver.laws import Contact, Friction, FrictionLaw, Unilateral
 from solver.laws.friction import compliance_of

@@ -14,7 +14,8 @@ import numpy as np
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.plane.body import Body, Held, NodeSpring
 from solver.discrete.plane.cut_shapes import CutShape
-from solver.discrete.plane.joint import Joint, NodePairs
+from solver.discrete.plane.joint import Joint
+from solver.discrete.plane.node_pairs import NodePairs
 from solver.refusal import RefusedError, Words
 
 ALIKE = 1e-9
