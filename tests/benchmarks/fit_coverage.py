@@ -26,12 +26,16 @@ from solver.study.measured_loop import MeasuredLoop
 from solver.study.scene_run import finished_run
 
 COMPLIANT = {"friction_law": "compliant"}
-KINDS: dict[tuple[str, ...], dict[str, str]] = {
+GENERAL = {"friction_law": "general", "cycles": 2}
+KINDS: dict[tuple[str, ...], dict[str, object]] = {
     ("friction",): {},
     ("friction", "young"): {},
     ("friction", "contact_stiffness"): COMPLIANT,
     ("friction", "young", "contact_stiffness"): COMPLIANT,
     ("friction", "pressure"): {},
+    ("friction", "cohesion", "friction_cap"): GENERAL,
+    ("friction", "tangential_stiffness", "cohesion"): GENERAL,
+    ("friction", "cohesion", "tangential_stiffness", "young"): GENERAL,
 }
 """What is fitted, and under which law."""
 RANGES = {
@@ -39,6 +43,9 @@ RANGES = {
     "young": (3e10, 3e11),
     "contact_stiffness": (2.0, 100.0),
     "pressure": (2000.0, 10_000.0),
+    "cohesion": (100.0, 900.0),
+    "tangential_stiffness": (1e7, 1e9),
+    "friction_cap": (1500.0, 4000.0),
 }
 """Between which what made a loop is drawn, evenly in its logarithm."""
 OFF = 0.5
