@@ -165,8 +165,9 @@ def fit(
     valley, profiles = _explored(runs)
     is_known = np.array([profile.is_known for profile in profiles])
     blind = _blind(valley, is_known)
-    z = _near_start(valley, blind, profiles)
-    lower, upper = _margins(valley, profiles)
+    ends = np.array([profile.ends() for profile in profiles]).T
+    z = _near_start(valley, blind, ends)
+    lower, upper = _margins(valley, ends)
     return Fit(
         settings=settings.replace(**runs.scales.changes(z)),
         names=runs.scales.names,
@@ -226,16 +227,14 @@ def _blind(valley: Valley, is_known: Flags) -> Array:
     return np.asarray(directions[distances > LIMIT / 2.0])
 
 
-def _near_start(
-    valley: Valley, blind: Array, profiles: list[LikelihoodProfile]
-) -> Array:
+def _near_start(valley: Valley, blind: Array, ends: Array) -> Array:
     """Point z, (p,), on the floor of a valley, nearest to the start z = 0.
 
     The place moves along the directions `blind`, (n, p), in which the valley continues,
-    and in no setting out of the margin that its profile gives.
+    and in no setting beyond the ends below and above of its profile, (2, p).
     """
     runs = valley.runs
-    below, above = np.array([profile.ends() for profile in profiles]).T
+    below, above = ends
     # The pull is as strong as the loop is, so that it decides where the loop does not.
     pull = max(float(np.linalg.norm(valley.jacobian, 2)), 1.0) * blind
     for _ in range(PULLS):
@@ -249,9 +248,9 @@ def _near_start(
     return valley.z
 
 
-def _margins(valley: Valley, profiles: list[LikelihoodProfile]) -> tuple[Array, Array]:
-    """Lower and upper ends of settings by their profiles, (p,) each, in SI."""
-    below, above = np.array([profile.ends() for profile in profiles]).T
+def _margins(valley: Valley, ends: Array) -> tuple[Array, Array]:
+    """Lower and upper values of settings, (p,) each, in SI, by ends in z, (2, p)."""
+    below, above = ends
     with np.errstate(invalid="ignore"):
         lower = valley.runs.scales.values(valley.z - below)
         upper = valley.runs.scales.values(valley.z + above)

@@ -139,13 +139,9 @@ class Valley:
         """
         found = [self.profile(along) for along in directions]
         for _ in directions:
-            again = [
-                number
-                for number, along in enumerate(directions)
-                if self._contradicts(found[number], along)
-            ]
-            for number in again:
-                found[number] = self.profile(directions[number])
+            for number, along in enumerate(directions):
+                if self._contradicts(found[number], along):
+                    found[number] = self.profile(along)
         return found
 
     def _contradicts(self, profile: LikelihoodProfile, along: Array) -> bool:
